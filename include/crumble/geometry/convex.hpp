@@ -1,0 +1,39 @@
+// Convex polyhedra: what the sticks are made of.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "crumble/base/vec.hpp"
+#include "crumble/geometry/triangle_mesh.hpp"
+
+namespace crumble {
+
+/// n . x <= offset inside; n is a unit vector.
+struct Plane {
+  Vec3 normal;
+  double offset;
+};
+
+/// A closed convex polyhedron in its own frame, metres.
+struct ConvexPolyhedron {
+  std::vector<Plane> planes;
+  std::vector<Vec3> vertices;
+  TriangleMesh surface;       // for drawing and for other libraries; same vertices
+  double half_thickness = 0;  // radius of the largest sphere about the vertex mean that fits inside
+};
+
+/// Greatest n . x - offset over the planes: negative inside, where its magnitude is the depth under the nearest
+/// face; `nearest` receives that plane's index. Outside it is a lower bound of the distance.
+double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std::uint32_t& nearest);
+
+/// Round stick: a right prism on a regular polygon with `sides` corners on the circle of `radius`, axis +Z through the
+/// origin, one face looking down (-Y) when `sides` is even.
+ConvexPolyhedron make_round_stick(double radius, double length, std::uint32_t sides);
+/// Bar with edges x, y, z about the origin.
+ConvexPolyhedron make_bar(const Vec3& size);
+/// From a closed triangle mesh. Throws Error: empty, mesh (index, non-finite, degenerate), mesh_open,
+/// mesh_orientation, mesh_nonconvex; the message names the first bad index.
+ConvexPolyhedron make_convex(const TriangleMesh& mesh);
+
+}  // namespace crumble

@@ -1,0 +1,37 @@
+// Triangles in space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "crumble/base/vec.hpp"
+
+namespace crumble {
+
+using Triangle = std::array<std::uint32_t, 3>;  // vertex indices, counter-clockwise seen from outside
+
+struct TriangleMesh {
+  std::vector<Vec3> vertices;  // metres
+  std::vector<Triangle> triangles;
+};
+
+/// Enclosed volume by the divergence theorem, m^3; negative when the triangles face inward.
+double volume(const TriangleMesh& mesh);
+/// m^2.
+double area(const TriangleMesh& mesh);
+
+/// What keeps a surface from being closed, oriented and 2-manifold; all zero when it is.
+struct SurfaceDefects {
+  std::size_t open_edges = 0;            // used by one triangle
+  std::size_t nonmanifold_edges = 0;     // used by more than two
+  std::size_t flipped_edges = 0;         // used twice in the same direction
+  std::size_t split_vertices = 0;        // whose triangles form more than one fan
+  std::size_t degenerate_triangles = 0;  // with a repeated index
+  std::size_t total() const {
+    return open_edges + nonmanifold_edges + flipped_edges + split_vertices + degenerate_triangles;
+  }
+};
+SurfaceDefects find_surface_defects(const TriangleMesh& mesh);
+
+}  // namespace crumble

@@ -1,0 +1,155 @@
+#include "crumble/geometry/convex.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "crumble/base/error.hpp"
+#include "crumble/base/transcendental.hpp"
+
+namespace crumble {
+namespace {
+
+std::string triangle_name(std::size_t t) {
+  return "tool triangle " + std::to_string(t);
+}
+
+void check_triangles(const TriangleMesh& mesh, double size) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!is_finite(mesh.vertices[v]))
+      throw Error(Code::invalid_value, "tool vertex " + std::to_string(v) + " is not finite");
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (v >= mesh.vertices.size()) {
+        throw Error(Code::mesh, triangle_name(t) + " names vertex " + std::to_string(v) + " of " +
+                                    std::to_string(mesh.vertices.size()));
+      }
+    }
+    const auto& [a, b, c] = mesh.triangles[t];
+    const Vec3 n = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+    if (norm(n) < 1e-12 * size * size) throw Error(Code::mesh, triangle_name(t) + " is degenerate: its area is zero");
+  }
+}
+
+double extent(const TriangleMesh& mesh) {
+  Vec3 low = mesh.vertices[0], high = mesh.vertices[0];
+  for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
+  return norm(high - low);
+}
+
+void check_closed(const TriangleMesh& mesh) {
+  const SurfaceDefects defects = find_surface_defects(mesh);
+  if (defects.open_edges + defects.nonmanifold_edges > 0) {
+    throw Error(Code::mesh_open, "tool mesh is not closed: " + std::to_string(defects.open_edges) + " open and " +
+                                     std::to_string(defects.nonmanifold_edges) + " non-manifold edges");
+  }
+  if (defects.flipped_edges > 0) {
+    throw Error(Code::mesh_orientation,
+                "tool mesh is not consistently oriented: " + std::to_string(defects.flipped_edges) + " flipped edges");
+  }
+  if (volume(mesh) <= 0) throw Error(Code::mesh_orientation, "tool mesh faces inward: its volume is negative");
+}
+
+// One plane per flat face: triangles of the same plane share it.
+std::vector<Plane> face_planes(const TriangleMesh& mesh, double size) {
+  std::vector<Plane> planes;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 n = normalized(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+    const Plane plane{n, dot(n, mesh.vertices[a])};
+    const bool known = std::any_of(planes.begin(), planes.end(), [&](const Plane& p) {
+      return norm(p.normal - plane.normal) < 1e-9 && std::abs(p.offset - plane.offset) < 1e-9 * size;
+    });
+    if (!known) planes.push_back(plane);
+  }
+  return planes;
+}
+
+void check_convex(const ConvexPolyhedron& body, double size) {
+  for (std::size_t p = 0; p < body.planes.size(); ++p) {
+    for (std::size_t v = 0; v < body.vertices.size(); ++v) {
+      const double above = dot(body.planes[p].normal, body.vertices[v]) - body.planes[p].offset;
+      if (above > 1e-9 * size) {
+        throw Error(Code::mesh_nonconvex, "tool mesh is not convex: vertex " + std::to_string(v) + " lies " +
+                                              std::to_string(above) + " m above face " + std::to_string(p));
+      }
+    }
+  }
+}
+
+double inscribed_radius(const ConvexPolyhedron& body) {
+  Vec3 center = Vec3::Zero();
+  for (const Vec3& v : body.vertices) center += v;
+  center /= static_cast<double>(body.vertices.size());
+  std::uint32_t nearest = 0;
+  return -greatest_plane_distance(body, center, nearest);
+}
+
+}  // namespace
+
+double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std::uint32_t& nearest) {
+  double greatest = dot(body.planes[0].normal, p) - body.planes[0].offset;
+  nearest = 0;
+  for (std::uint32_t i = 1; i < body.planes.size(); ++i) {
+    const double distance = dot(body.planes[i].normal, p) - body.planes[i].offset;
+    if (distance > greatest) greatest = distance, nearest = i;
+  }
+  return greatest;
+}
+
+ConvexPolyhedron make_convex(const TriangleMesh& mesh) {
+  if (mesh.triangles.size() < 4 || mesh.vertices.size() < 4) {
+    throw Error(Code::empty,
+                "tool mesh has " + std::to_string(mesh.triangles.size()) + " triangles, at least 4 are needed");
+  }
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!is_finite(mesh.vertices[v]))
+      throw Error(Code::invalid_value, "tool vertex " + std::to_string(v) + " is not finite");
+  }
+  const double size = extent(mesh);
+  check_triangles(mesh, size);
+  check_closed(mesh);
+  ConvexPolyhedron body{face_planes(mesh, size), mesh.vertices, mesh, 0};
+  check_convex(body, size);
+  body.half_thickness = inscribed_radius(body);
+  return body;
+}
+
+ConvexPolyhedron make_round_stick(double radius, double length, std::uint32_t sides) {
+  require_positive("radius", radius);
+  require_positive("length", length);
+  require_in_range("sides", sides, 3, 4096);
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    // the middle of a side looks down
+    const double angle = 2 * kPi * (i + 0.5) / sides - kPi / 2;
+    const Vec3 rim(radius * cos_exact(angle), radius * sin_exact(angle), 0.5 * length);
+    mesh.vertices.push_back(rim);
+    mesh.vertices.push_back({rim.x(), rim.y(), -rim.z()});
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t front = 2 * i, back = front + 1, next_front = 2 * ((i + 1) % sides), next_back = next_front + 1;
+    mesh.triangles.push_back({front, back, next_back});
+    mesh.triangles.push_back({front, next_back, next_front});
+    if (i > 0 && i + 1 < sides) {
+      mesh.triangles.push_back({0, front, next_front});
+      mesh.triangles.push_back({1, next_back, back});
+    }
+  }
+  return make_convex(mesh);
+}
+
+ConvexPolyhedron make_bar(const Vec3& size) {
+  require_positive("size.x", size.x());
+  require_positive("size.y", size.y());
+  require_positive("size.z", size.z());
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.push_back(
+        0.5 * Vec3(i & 1 ? size.x() : -size.x(), i & 2 ? size.y() : -size.y(), i & 4 ? size.z() : -size.z()));
+  }
+  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  return make_convex(mesh);
+}
+
+}  // namespace crumble
