@@ -1,0 +1,26 @@
+// Where the energy is, and where it went.
+#pragma once
+
+#include "crumble/network/spring_network.hpp"
+
+namespace crumble {
+
+/// Sum of k/2 (length - rest length)^2 over the intact springs, J.
+double spring_energy(const SpringNetwork& network, const NetworkState& state) noexcept;
+/// Sum of m/2 v^2 over the nodes that may move, J.
+double kinetic_energy(const SpringNetwork& network, const NetworkState& state) noexcept;
+/// Sum of k/2 l0^2 over all springs, J: the scale against which rounding is judged.
+double reference_energy(const SpringNetwork& network) noexcept;
+
+/// Sums since the start, J. stored = tool_work + external_work - dissipated - cut.
+struct EnergyLedger {
+  double stored = 0;         // springs + kinetic, now
+  double tool_work = 0;      // done by tools and walls on the body: projection and reaction
+  double external_work = 0;  // gravity
+  double dissipated = 0;     // by drag
+  double cut = 0;            // left with the cut springs
+  /// Greatest growth of the solve stage alone in one substep, over stored + reference energy: the audit of the theorem.
+  double gain_max_relative = 0;
+};
+
+}  // namespace crumble

@@ -1,0 +1,55 @@
+// The spring-damper network of a body: what never changes while it is simulated.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "crumble/base/vec_array.hpp"
+#include "crumble/tetmesh/tet_mesh.hpp"
+
+namespace crumble {
+
+/// What the body is made of. Defaults: the paper's best parameters (Table 1) and its 30 g cube.
+struct Material {
+  double stiffness = 30;      // k of every spring, N/m; > 0
+  double damping_ratio = 30;  // alpha of Eq (2); >= 0
+  double length_limit = 1.3;  // l_p of Eq (8): a spring is cut when longer than l_p times its rest length; > 1
+  double mass = 0.03;         // of the whole body, kg; > 0
+};
+
+/// How the body's mass is shared out among its nodes.
+enum class MassRule : std::uint8_t {
+  lumped = 0,  // by the volume that surrounds each node
+  equal = 1,   // the same for all: the paper's reading
+};
+
+struct SpringNetwork {
+  std::vector<Edge> springs;           // node indices (spring_count)
+  std::vector<double> rest_lengths;    // l0, metres (spring_count)
+  std::vector<double> stiffnesses;     // k, N/m (spring_count)
+  std::vector<double> masses;          // m_i, kg (node_count)
+  std::vector<double> drags;           // c_i of Eq (2), N s/m (node_count)
+  std::vector<double> stiffness_sums;  // D_i, sum of k over the node's springs, N/m (node_count)
+  std::vector<std::uint8_t> fixed;     // 1: never moves (node_count)
+
+  std::size_t node_count() const { return masses.size(); }
+  std::size_t spring_count() const { return springs.size(); }
+};
+
+/// What changes from step to step.
+struct NetworkState {
+  VecArray positions;                // metres
+  VecArray velocities;               // m/s
+  VecArray forces;                   // springs + external, at the last solve, before contact, N
+  VecArray external;                 // force on each node from outside (gravity), N
+  std::vector<std::uint8_t> intact;  // 1 intact, 0 cut (spring_count)
+};
+
+/// Throws Error naming the field: invalid_value, out_of_range.
+SpringNetwork make_network(const TetMesh& mesh, const Material& material, MassRule rule,
+                           std::span<const std::uint32_t> fixed_nodes);
+/// At rest, unbroken, without external force.
+NetworkState make_rest_state(const TetMesh& mesh);
+
+}  // namespace crumble

@@ -1,0 +1,34 @@
+#include "crumble/network/energy.hpp"
+
+#include <cmath>
+
+namespace crumble {
+
+double spring_energy(const SpringNetwork& network, const NetworkState& state) noexcept {
+  double sum = 0;
+  for (std::size_t s = 0; s < network.spring_count(); ++s) {
+    if (!state.intact[s]) continue;
+    const auto [i, j] = network.springs[s];
+    const double stretch = norm(state.positions[j] - state.positions[i]) - network.rest_lengths[s];
+    sum += 0.5 * network.stiffnesses[s] * stretch * stretch;
+  }
+  return sum;
+}
+
+double kinetic_energy(const SpringNetwork& network, const NetworkState& state) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < network.node_count(); ++i) {
+    if (!network.fixed[i]) sum += 0.5 * network.masses[i] * squared_norm(state.velocities[i]);
+  }
+  return sum;
+}
+
+double reference_energy(const SpringNetwork& network) noexcept {
+  double sum = 0;
+  for (std::size_t s = 0; s < network.spring_count(); ++s) {
+    sum += 0.5 * network.stiffnesses[s] * network.rest_lengths[s] * network.rest_lengths[s];
+  }
+  return sum;
+}
+
+}  // namespace crumble
