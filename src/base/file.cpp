@@ -18,7 +18,9 @@ Bytes read_whole(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file || std::filesystem::is_directory(path)) fail("cannot read", path);
-  Bytes bytes(static_cast<std::size_t>(file.tellg()), {});
+  const std::streamoff size = file.tellg();
+  if (size < 0) fail("cannot read", path);  // a pipe has no size
+  Bytes bytes(static_cast<std::size_t>(size), {});
   file.seekg(0);
   if (!bytes.empty() && !file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     fail("cannot read", path);

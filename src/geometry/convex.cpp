@@ -1,9 +1,12 @@
 #include "crumble/geometry/convex.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/text.hpp"
 #include "crumble/base/transcendental.hpp"
 
 namespace crumble {
@@ -70,7 +73,7 @@ void check_convex(const ConvexPolyhedron& body, double size) {
       const double above = dot(body.planes[p].normal, body.vertices[v]) - body.planes[p].offset;
       if (above > 1e-9 * size) {
         throw Error(Code::mesh_nonconvex, "tool mesh is not convex: vertex " + std::to_string(v) + " lies " +
-                                              std::to_string(above) + " m above face " + std::to_string(p));
+                                              to_text(above) + " m above face " + std::to_string(p));
       }
     }
   }
@@ -94,6 +97,21 @@ double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std:
     if (distance > greatest) greatest = distance, nearest = i;
   }
   return greatest;
+}
+
+SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p) {
+  SurfaceQuery query{};
+  query.signed_distance = greatest_plane_distance(body, p, query.plane);
+  query.point = p - query.signed_distance * body.planes[query.plane].normal;
+  if (query.signed_distance <= 0) return query;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : body.surface.triangles) {
+    const Vec3 q = closest_on_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c]);
+    const double squared = squared_norm(p - q);
+    if (squared < least) least = squared, query.point = q;
+  }
+  query.signed_distance = std::sqrt(least);
+  return query;
 }
 
 ConvexPolyhedron make_convex(const TriangleMesh& mesh) {

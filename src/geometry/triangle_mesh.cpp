@@ -28,6 +28,23 @@ std::size_t count_fans(const std::vector<std::array<std::uint32_t, 2>>& spokes) 
 
 }  // namespace
 
+Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
+  const double d1 = dot(ab, p - a), d2 = dot(ac, p - a);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const double d3 = dot(ab, p - b), d4 = dot(ac, p - b);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double d5 = dot(ab, p - c), d6 = dot(ac, p - c);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  return a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
+}
+
 double volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles) sum += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c]));

@@ -7,10 +7,9 @@ namespace crumble {
 double spring_energy(const SpringNetwork& network, const NetworkState& state) noexcept {
   double sum = 0;
   for (std::size_t s = 0; s < network.spring_count(); ++s) {
-    if (!state.intact[s]) continue;
     const auto [i, j] = network.springs[s];
     const double stretch = norm(state.positions[j] - state.positions[i]) - network.rest_lengths[s];
-    sum += 0.5 * network.stiffnesses[s] * stretch * stretch;
+    sum += 0.5 * state.stiffnesses[s] * stretch * stretch;
   }
   return sum;
 }

@@ -13,13 +13,13 @@ void sum_forces(const SpringNetwork& network, NetworkState& state) noexcept {
   const double *x = state.positions.x.data(), *y = state.positions.y.data(), *z = state.positions.z.data();
   double *fx = state.forces.x.data(), *fy = state.forces.y.data(), *fz = state.forces.z.data();
   for (std::size_t s = 0; s < network.spring_count(); ++s) {
-    if (!state.intact[s]) continue;
+    if (state.stiffnesses[s] == 0) continue;
     const auto [i, j] = network.springs[s];
     const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
     const double squared = (dx * dx + dy * dy) + dz * dz;
     if (squared < std::numeric_limits<double>::min()) continue;
     const double length = std::sqrt(squared);
-    const double pull = network.stiffnesses[s] * (length - network.rest_lengths[s]) / length;
+    const double pull = state.stiffnesses[s] * (length - network.rest_lengths[s]) / length;
     fx[i] += pull * dx, fy[i] += pull * dy, fz[i] += pull * dz;
     fx[j] -= pull * dx, fy[j] -= pull * dy, fz[j] -= pull * dz;
   }

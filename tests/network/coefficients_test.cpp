@@ -37,7 +37,7 @@ TEST(Coefficients, OneNodeUnderConstantForceIsExact) {
   for (const double drag : {0.0, 1e-6, 0.01, 2.2, 1e4}) {
     const double mass = 4.5e-5, tau = 1e-3, force = 0.7, v0 = -0.3;
     TwoNodes pair(mass, drag, 1, 1);
-    pair.state.intact[0] = 0;
+    pair.state.stiffnesses[0] = 0;
     pair.state.external.x[1] = force;
     pair.state.velocities.x[1] = v0;
     const StepCoefficients c =

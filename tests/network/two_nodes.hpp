@@ -19,7 +19,7 @@ struct TwoNodes {
     network.fixed = {1, 0};
     state.positions = state.velocities = state.forces = state.external = VecArray(2);
     state.positions.x[1] = rest_length;
-    state.intact = {1};
+    state.stiffnesses = {stiffness};
   }
 };
 

@@ -35,8 +35,9 @@ class ByteWriter {
     put(std::span<const T>(values));
   }
   void put_raw(const void* data, std::size_t size) {
-    const auto* first = static_cast<const std::uint8_t*>(data);
-    bytes_.insert(bytes_.end(), first, first + size);
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    if (size > 0) std::memcpy(bytes_.data() + at, data, size);
   }
   std::vector<std::uint8_t>& bytes() { return bytes_; }
 

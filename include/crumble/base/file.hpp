@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "crumble/base/error.hpp"
+
 namespace crumble {
 
 /// Throws Error(io) naming the path and the system's reason.
@@ -16,7 +18,7 @@ std::string read_text(const std::filesystem::path& path);
 void write_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_text(const std::filesystem::path& path, std::string_view text);
 
-/// Calls `write(temporary)` with a name beside `path`, then renames; removes the temporary file if `write` throws.
+/// Calls `write(temporary)` with a name beside `path`, then renames; removes the temporary file if that fails.
 template <class Write>
 void replace_file(const std::filesystem::path& path, Write&& write) {
   std::filesystem::path temporary = path;
@@ -24,6 +26,10 @@ void replace_file(const std::filesystem::path& path, Write&& write) {
   try {
     write(temporary);
     std::filesystem::rename(temporary, path);
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(Code::io, "cannot write '" + path.string() + "': " + error.code().message());
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);

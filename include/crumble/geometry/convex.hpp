@@ -27,6 +27,15 @@ struct ConvexPolyhedron {
 /// face; `nearest` receives that plane's index. Outside it is a lower bound of the distance.
 double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std::uint32_t& nearest);
 
+/// Where the surface is nearest to p, and how far: negative inside (under the nearest face), the Euclidean distance
+/// outside.
+struct SurfaceQuery {
+  Vec3 point;
+  double signed_distance;
+  std::uint32_t plane;  // the face met; at an edge or corner the one that p is farthest above
+};
+SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p);
+
 /// Round stick: a right prism on a regular polygon with `sides` corners on the circle of `radius`, axis +Z through the
 /// origin, one face looking down (-Y) when `sides` is even.
 ConvexPolyhedron make_round_stick(double radius, double length, std::uint32_t sides);

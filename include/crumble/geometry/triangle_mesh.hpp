@@ -16,6 +16,9 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
+/// Nearest point of the triangle a b c to p (Ericson, Real-Time Collision Detection, 5.1.5).
+Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Enclosed volume by the divergence theorem, m^3; negative when the triangles face inward.
 double volume(const TriangleMesh& mesh);
 /// m^2.

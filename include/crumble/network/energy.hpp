@@ -5,7 +5,7 @@
 
 namespace crumble {
 
-/// Sum of k/2 (length - rest length)^2 over the intact springs, J.
+/// Sum of k/2 (length - rest length)^2 over the springs, with the stiffness in force now, J.
 double spring_energy(const SpringNetwork& network, const NetworkState& state) noexcept;
 /// Sum of m/2 v^2 over the nodes that may move, J.
 double kinetic_energy(const SpringNetwork& network, const NetworkState& state) noexcept;

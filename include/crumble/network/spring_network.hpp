@@ -27,7 +27,7 @@ enum class MassRule : std::uint8_t {
 struct SpringNetwork {
   std::vector<Edge> springs;           // node indices (spring_count)
   std::vector<double> rest_lengths;    // l0, metres (spring_count)
-  std::vector<double> stiffnesses;     // k, N/m (spring_count)
+  std::vector<double> stiffnesses;     // k of the unbroken body, N/m (spring_count)
   std::vector<double> masses;          // m_i, kg (node_count)
   std::vector<double> drags;           // c_i of Eq (2), N s/m (node_count)
   std::vector<double> stiffness_sums;  // D_i, sum of k over the node's springs, N/m (node_count)
@@ -39,17 +39,17 @@ struct SpringNetwork {
 
 /// What changes from step to step.
 struct NetworkState {
-  VecArray positions;                // metres
-  VecArray velocities;               // m/s
-  VecArray forces;                   // springs + external, at the last solve, before contact, N
-  VecArray external;                 // force on each node from outside (gravity), N
-  std::vector<std::uint8_t> intact;  // 1 intact, 0 cut (spring_count)
+  VecArray positions;               // metres
+  VecArray velocities;              // m/s
+  VecArray forces;                  // springs + external, at the last solve, before contact, N
+  VecArray external;                // force on each node from outside (gravity), N
+  std::vector<double> stiffnesses;  // in force now, N/m: fading to 0 once a spring is cut (spring_count)
 };
 
 /// Throws Error naming the field: invalid_value, out_of_range.
 SpringNetwork make_network(const TetMesh& mesh, const Material& material, MassRule rule,
                            std::span<const std::uint32_t> fixed_nodes);
 /// At rest, unbroken, without external force.
-NetworkState make_rest_state(const TetMesh& mesh);
+NetworkState make_rest_state(const TetMesh& mesh, const SpringNetwork& network);
 
 }  // namespace crumble

@@ -18,6 +18,7 @@ struct NodeConstraint {
   std::uint32_t node = 0;
   std::uint32_t holder = 0;  // index of the tool; kWorldHolder for floor and walls
   ContactState state = ContactState::fresh;
+  Vec3 point = Vec3::Zero();     // where the node is held, metres
   Vec3 normal = Vec3::Zero();    // unit, from the holder's surface into the body
   Vec3 velocity = Vec3::Zero();  // of the holder's surface at the node, m/s
   double static_friction = 0;    // Coulomb, dimensionless
