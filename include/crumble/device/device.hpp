@@ -1,0 +1,90 @@
+// What a haptic device is to the rest: a sample comes out of it, a force goes into it.
+//
+// A device is open from its construction to its destruction; there is no third state to test for. What it needs
+// (a tick period, a file, a library) is given when it is opened, and only opening throws.
+//
+// Units are SI; positions, velocities and forces are in the device's own right-handed frame: x right, y up, z towards
+// the user. device/workspace.hpp maps that frame to the scene.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "crumble/geometry/pose.hpp"
+
+namespace crumble {
+
+enum class DeviceKind : std::uint8_t {
+  null = 0,     // a pose that never moves
+  press = 1,    // a scripted straight press
+  replay = 2,   // a trajectory from a file
+  phantom = 3,  // 3D Systems PHANToM / Touch through HDAPI: see available_devices() for whether this build has it
+  custom = 4,   // a class of the user's own that implements Device
+};
+
+/// What a device senses, or a trajectory holds: bits of a mask.
+namespace quantity {
+inline constexpr std::uint32_t kPosition = 1u << 0;
+inline constexpr std::uint32_t kOrientation = 1u << 1;
+inline constexpr std::uint32_t kLinearVelocity = 1u << 2;
+inline constexpr std::uint32_t kAngularVelocity = 1u << 3;
+inline constexpr std::uint32_t kButtons = 1u << 4;
+inline constexpr std::uint32_t kForce = 1u << 5;
+inline constexpr std::uint32_t kTorque = 1u << 6;
+inline constexpr std::uint32_t kFlags = 1u << 7;
+inline constexpr std::uint32_t kAll = (1u << 8) - 1;
+}  // namespace quantity
+
+/// Bits of DeviceSample::flags.
+namespace sample_flag {
+inline constexpr std::uint32_t kResampled = 1u << 0;  // interpolated between recorded rows, not recorded at this time
+inline constexpr std::uint32_t kFinished = 1u << 1;   // the script or file is over; the last pose is held
+}  // namespace sample_flag
+
+struct DeviceInfo {
+  std::string name = {};  // for people
+  DeviceKind kind = DeviceKind::custom;
+  double max_force = 0;                          // N, peak; 0 when the device has no motors
+  std::uint32_t measured = quantity::kPosition;  // what is sensed; the rest of a sample is derived or at its default
+  double rate = 0;                               // nominal samples per second
+  bool step_locked = false;                      // read k is tick k, whatever the wall clock says
+};
+
+/// Everything that belongs to one instant.
+struct DeviceSample {
+  double time = 0;                       // s since the device was opened
+  Pose pose = {};                        // device frame
+  Vec3 linear_velocity = Vec3::Zero();   // m/s
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, axes of the device frame
+  std::uint32_t buttons = 0;             // bit set = pressed
+  std::uint32_t flags = 0;               // sample_flag bits
+  std::uint64_t sequence = 0;            // counts from 0; a gap means samples that nobody read
+};
+
+enum class ReadStatus : std::uint8_t {
+  ok = 0,
+  no_new_sample = 1,  // `sample` is untouched
+  finished = 2,       // `sample` is filled with the last pose, held at rest
+  lost = 3,           // `sample` is untouched, and so it will stay: open the device again
+};
+
+/// Real-time rule for read and write: no allocation, no lock, no system call that can block, no exception; they are
+/// called from one thread at a time.
+class Device {
+ public:
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  virtual const DeviceInfo& info() const noexcept = 0;
+  /// Fills `sample` with one consistent sample: all its parts belong to the same instant.
+  [[nodiscard]] virtual ReadStatus read(DeviceSample& sample) noexcept = 0;
+  /// Force (N) and torque (N m) on the hand, device frame, until the next write. A lost device ignores it and says so
+  /// at the next read. Limits are the haptics module's work; a device may clamp to max_force but is not trusted to.
+  virtual void write(const Vec3& force, const Vec3& torque) noexcept = 0;
+
+ protected:
+  Device() = default;
+};
+
+}  // namespace crumble

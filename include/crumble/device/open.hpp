@@ -1,0 +1,33 @@
+// One door to every kind of device, for those who choose the kind at run time.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "crumble/device/replay.hpp"
+#include "crumble/device/scripted.hpp"
+
+namespace crumble {
+
+struct DeviceDef {
+  DeviceKind kind = DeviceKind::null;
+  double tick = 1e-3;           // s, > 0: period of the step-locked kinds
+  Pose rest = {};               // kind null
+  PressOptions press = {};      // kind press
+  ReplayOptions replay = {};    // kind replay
+  std::string trajectory = {};  // kind replay: path of a .ctraj file
+};
+
+/// The kinds that open_device can open in this build.
+std::span<const DeviceKind> available_devices();
+const char* to_string(DeviceKind kind);
+/// Throws Error(unsupported) with the list of kinds when `name` is none.
+DeviceKind device_kind(std::string_view name);
+
+/// Throws Error(unsupported) with the list of available kinds for one that this build does not have, and what the
+/// kind's own open function throws.
+std::unique_ptr<Device> open_device(const DeviceDef& def);
+
+}  // namespace crumble

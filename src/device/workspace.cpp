@@ -1,0 +1,41 @@
+#include "crumble/device/workspace.hpp"
+
+#include <limits>
+
+#include "device/check.hpp"
+
+namespace crumble {
+
+Workspace::Workspace(const WorkspaceOptions& options)
+    : pose_(options.pose), scale_(options.scale), force_gain_(options.force_gain), mount_(options.mount) {
+  device::require_pose("workspace.pose", options.pose);
+  require_positive("workspace.scale", options.scale);
+  require_in_range("workspace.force_gain", options.force_gain, 0, std::numeric_limits<double>::max());
+  device::require_pose("workspace.mount", {Vec3::Zero(), options.mount});
+  mount_ = renormalized({Vec3::Zero(), options.mount}).orientation;
+  pose_ = renormalized(options.pose);
+  rotation_ = rotation_matrix(pose_.orientation);
+}
+
+Pose Workspace::to_scene(const Pose& device) const noexcept {
+  return {pose_.position + rotate(rotation_, scale_ * device.position),
+          multiply(multiply(pose_.orientation, device.orientation), mount_)};
+}
+
+DeviceSample Workspace::to_scene(const DeviceSample& device) const noexcept {
+  DeviceSample scene = device;
+  scene.pose = to_scene(device.pose);
+  scene.linear_velocity = rotate(rotation_, scale_ * device.linear_velocity);
+  scene.angular_velocity = rotate(rotation_, device.angular_velocity);
+  return scene;
+}
+
+Vec3 Workspace::force_to_device(const Vec3& force) const noexcept {
+  return (force_gain_ * scale_) * rotate_back(rotation_, force);
+}
+
+Vec3 Workspace::torque_to_device(const Vec3& torque) const noexcept {
+  return force_gain_ * rotate_back(rotation_, torque);
+}
+
+}  // namespace crumble
