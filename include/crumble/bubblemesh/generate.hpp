@@ -1,0 +1,46 @@
+// The close-packed bubble mesh: tetrahedra of nearly equal size in a body, from a packing of equal balls.
+//
+// A. Shimada and D. Gossard's bubble mesh (1995), started from a close-packed crystal as the paper does in §2.2: carve
+// the body out of the crystal, draw the balls near the surface onto it, let balls push each other to equal distances,
+// join them by Delaunay tetrahedra, mend the few bad ones. docs/mesh.md shows the results.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "crumble/geometry/shape.hpp"
+#include "crumble/tetmesh/quality.hpp"
+#include "crumble/tetmesh/tet_mesh.hpp"
+
+namespace crumble {
+
+/// Stacking of the hexagonal layers, which lie level (normal +Y): ABAB or ABCABC.
+enum class Lattice : std::uint8_t { hcp, fcc };
+
+struct BubbleMeshOptions {
+  double spacing = 0;          // distance wanted between neighbouring nodes = ball diameter d, metres
+  Vec3 offset = Vec3::Zero();  // of a lattice point from the centre of the body's bounding box, in units of d
+  Lattice lattice = Lattice::hcp;
+  /// Exact numbers of nodes on the surface (corners and creases included) and inside: both or none. Each must lie
+  /// within 0.6 to 1.5 times the number that comes out by itself.
+  std::optional<std::uint32_t> surface_nodes, inside_nodes;
+};
+
+struct BubbleMesh {
+  TetMesh mesh;              // nodes in lattice row order: by layer, row, place in the row; tetrahedra by least node
+  MeshQuality quality;
+  double volume_error = 0;   // (volume of the tetrahedra - volume of the shape) / volume of the shape
+  std::vector<std::string> warnings;
+};
+
+/// The greatest spacing that generate() takes for a shape, metres.
+double largest_spacing(const Shape& shape);
+
+/// Meshes a shape. The same bits on every compiler, level of optimisation and number of threads. Throws Error:
+/// invalid_value or out_of_range (an option), too_coarse (spacing > largest_spacing), too_large (more than 5 million
+/// nodes expected; found before memory is taken), mesh (no valid mesh came out).
+BubbleMesh generate(const Shape& shape, const BubbleMeshOptions& options);
+
+}  // namespace crumble

@@ -1,0 +1,50 @@
+// All that a simulation is made from.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "crumble/base/bytes.hpp"
+#include "crumble/contact/tool.hpp"
+#include "crumble/network/coefficients.hpp"
+#include "crumble/network/spring_network.hpp"
+#include "crumble/tetmesh/tet_mesh.hpp"
+
+namespace crumble {
+
+/// How one step is done.
+struct StepSettings {
+  double tau = 1e-3;  // seconds that a step (paper: an iteration) advances; (0, 0.01]
+  TimeStepPolicy policy = TimeStepPolicy::guard;
+  std::uint32_t iterations = 1;  // of Eqs (3) and (4) per step, each advancing tau; above 1 only unchecked
+  ContactRule contact_rule = ContactRule::nearest_surface;
+  double cut_fade = 4e-3;     // seconds in which a cut spring's force goes to 0, in equal steps; [0, 1]
+  bool mean_force = false;    // Eq (7): report the mean of the last five forces
+  bool energy_audit = false;  // keep the ledger; costs four passes over the springs
+};
+
+/// Metres, kilograms, seconds, newtons; right-handed, +Y up.
+struct SimulationDef {
+  TetMesh mesh;
+  Material material;
+  MassRule mass_rule = MassRule::lumped;
+  std::vector<std::uint32_t> fixed_nodes;
+  Vec3 gravity{0, -9.81, 0};                          // m/s^2
+  std::vector<Wall> walls{{{Vec3::UnitY(), 0}, {}}};  // a smooth floor at y = 0
+  std::vector<Tool> tools;
+  StepSettings step;
+};
+
+/// The paper's choices where it makes one: along-motion contact, equal masses, tau = 2.9 ms unchecked, one iteration,
+/// cuts without fading, Eq (7)'s mean, friction 3.0 / 1.5 on every tool and wall, no gravity. Body, fixed nodes and
+/// material stay.
+void apply_paper_preset(SimulationDef& def);
+
+/// Nodes whose rest position has y <= height, metres: what stands on the table.
+std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height);
+
+/// The definition as bytes and back (recordings). Reading throws Error(corrupt) and whatever its parts refuse.
+void write_definition(const SimulationDef& def, ByteWriter& out);
+SimulationDef read_definition(ByteReader& in);
+
+}  // namespace crumble

@@ -1,0 +1,45 @@
+// A recording: what a simulation was made from, where it stood, every pose it was given and a hash of every state it
+// reached. A bug report is a file that can be run again.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "crumble/sim/simulation.hpp"
+
+namespace crumble {
+
+class Recording {
+ public:
+  /// Starts at the simulation's present state.
+  explicit Recording(const Simulation& start);
+  /// After each step: the poses it was given and the state it led to. Allocates; call it outside the servo loop's
+  /// budget.
+  void add(std::span<const Pose> poses, std::uint64_t state_hash);
+
+  std::size_t step_count() const { return hashes_.size(); }
+  std::size_t tool_count() const { return tool_count_; }
+  std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
+  std::uint64_t state_hash(std::size_t step) const { return hashes_[step]; }
+  /// A simulation at the recording's start.
+  Simulation start(bool energy_audit = false) const;
+
+  /// The file is replaced only when all is written. Loading throws Error: io, corrupt, version.
+  void save(const std::filesystem::path& path) const;
+  static Recording load(const std::filesystem::path& path);
+
+ private:
+  Recording() = default;
+  std::vector<std::uint8_t> definition_, snapshot_;
+  std::size_t tool_count_ = 0;
+  std::vector<Pose> poses_;  // (step_count x tool_count)
+  std::vector<std::uint64_t> hashes_;
+};
+
+/// The first step whose state differs from the recorded one; nothing when all agree.
+/// `after_step` is called after each step, with the simulation; it may return false to stop early.
+std::optional<std::size_t> replay(const Recording& recording, Simulation& from_start,
+                                  const std::function<bool(const Simulation&)>& after_step = {});
+
+}  // namespace crumble

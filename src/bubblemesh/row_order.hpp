@@ -1,0 +1,14 @@
+// The order in which nodes and tetrahedra are handed out.
+#pragma once
+
+#include "bubblemesh/cloud.hpp"
+#include "bubblemesh/lattice.hpp"
+
+namespace crumble {
+
+/// Sorts the nodes by layer, row and place of the lattice (by where they are now, so nodes off the lattice join
+/// the nearest row) and the tetrahedra by their nodes: least node first, then the others ascending but for the
+/// last two, whose order carries the orientation. In the bulk, neighbours in a direction then stand at constant offsets.
+void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetrahedron>& tetrahedra);
+
+}  // namespace crumble

@@ -1,0 +1,105 @@
+#include "crumble/sim/recording.hpp"
+
+#include "crumble/base/file.hpp"
+#include "crumble/base/hash.hpp"
+
+namespace crumble {
+namespace {
+
+constexpr std::uint64_t kRecordingMagic = 0x31304345524d5243u;  // "CRMREC01"
+constexpr std::uint32_t kRecordingVersion = 1;
+
+std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
+  Hash hash;
+  hash.add(bytes);
+  return hash.value();
+}
+
+void put(ByteWriter& out, const Pose& pose) {
+  const Quat& q = pose.orientation;
+  for (const double v : {pose.position.x(), pose.position.y(), pose.position.z(), q.w(), q.x(), q.y(), q.z()})
+    out.put(v);
+}
+
+Pose get_pose(ByteReader& in) {
+  double v[7];
+  for (double& each : v) each = in.get<double>();
+  return {{v[0], v[1], v[2]}, Quat(v[3], v[4], v[5], v[6])};
+}
+
+}  // namespace
+
+Recording::Recording(const Simulation& start)
+    : snapshot_(start.snapshot()), tool_count_(start.definition().tools.size()) {
+  ByteWriter out;
+  write_definition(start.definition(), out);
+  definition_ = std::move(out.bytes());
+}
+
+void Recording::add(std::span<const Pose> poses, std::uint64_t state_hash) {
+  if (poses.size() != tool_count_) {
+    throw Error(Code::out_of_range, "a recording of " + std::to_string(tool_count_) + " tools was given " +
+                                        std::to_string(poses.size()) + " poses");
+  }
+  poses_.insert(poses_.end(), poses.begin(), poses.end());
+  hashes_.push_back(state_hash);
+}
+
+Simulation Recording::start(bool energy_audit) const {
+  ByteReader in(definition_, "recording");
+  SimulationDef def = read_definition(in);
+  def.step.energy_audit = energy_audit;
+  Simulation sim(std::move(def));
+  sim.restore(snapshot_);
+  return sim;
+}
+
+void Recording::save(const std::filesystem::path& path) const {
+  ByteWriter out;
+  out.put(kRecordingMagic), out.put(kRecordingVersion);
+  out.put(definition_), out.put(snapshot_);
+  out.put(static_cast<std::uint64_t>(tool_count_));
+  out.put(static_cast<std::uint64_t>(hashes_.size()));
+  for (const Pose& pose : poses_) put(out, pose);
+  for (const std::uint64_t hash : hashes_) out.put(hash);
+  out.put(checksum(out.bytes()));
+  write_bytes(path, out.bytes());
+}
+
+Recording Recording::load(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_bytes(path);
+  const std::string name = "recording '" + path.string() + "'";
+  ByteReader in(bytes, name);
+  if (in.get<std::uint64_t>() != kRecordingMagic) throw Error(Code::format, name + " is not a recording");
+  if (const auto version = in.get<std::uint32_t>(); version != kRecordingVersion) {
+    throw Error(Code::version, name + " has version " + std::to_string(version) + ", this library reads " +
+                                   std::to_string(kRecordingVersion));
+  }
+  const std::span<const std::uint8_t> all(bytes);
+  ByteReader end(all.last(8), name);
+  if (end.get<std::uint64_t>() != checksum(all.first(all.size() - 8))) {
+    throw Error(Code::corrupt, name + " is truncated or damaged: its checksum does not fit");
+  }
+  Recording recording;
+  recording.definition_ = in.get_vector<std::uint8_t>();
+  recording.snapshot_ = in.get_vector<std::uint8_t>();
+  const auto tools = in.get<std::uint64_t>(), steps = in.get<std::uint64_t>();
+  if (tools > 1000 || steps > in.left() / (7 * sizeof(double) * tools + 8))
+    throw Error(Code::corrupt, name + " is truncated");
+  recording.tool_count_ = static_cast<std::size_t>(tools);
+  for (std::uint64_t i = 0; i < tools * steps; ++i) recording.poses_.push_back(get_pose(in));
+  for (std::uint64_t i = 0; i < steps; ++i) recording.hashes_.push_back(in.get<std::uint64_t>());
+  return recording;
+}
+
+std::optional<std::size_t> replay(const Recording& recording, Simulation& sim,
+                                  const std::function<bool(const Simulation&)>& after_step) {
+  for (std::size_t step = 0; step < recording.step_count(); ++step) {
+    sim.step(recording.poses(step));
+    if (sim.state_hash() != recording.state_hash(step)) return step;
+    if (after_step && !after_step(sim)) break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace crumble

@@ -1,0 +1,168 @@
+#include "crumble/sim/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "crumble/base/hash.hpp"
+#include "crumble/fracture/cut.hpp"
+
+namespace crumble {
+namespace {
+
+std::uint64_t hash_definition(const SimulationDef& def) {
+  ByteWriter bytes;
+  write_definition(def, bytes);
+  Hash hash;
+  hash.add(std::span<const std::uint8_t>(bytes.bytes()));
+  return hash.value();
+}
+
+void check_settings(const SimulationDef& def) {
+  if (!is_finite(def.gravity)) throw Error(Code::invalid_value, "gravity is not finite");
+  if (def.step.iterations < 1 || def.step.iterations > 1000) {
+    throw Error(Code::out_of_range, "step.iterations must lie in [1, 1000], is " + std::to_string(def.step.iterations));
+  }
+  if (def.step.iterations > 1 && def.step.policy != TimeStepPolicy::unchecked) {
+    throw Error(Code::out_of_range,
+                "step.iterations above 1 belong to the paper's mode: set the time-step policy to unchecked");
+  }
+}
+
+SimulationDef checked(SimulationDef def) {
+  check_settings(def);
+  return def;
+}
+
+// Eq (5) sees gravity as a constant force on each node.
+VecArray weights(const SpringNetwork& network, const Vec3& gravity) {
+  VecArray forces(network.node_count());
+  for (std::size_t i = 0; i < network.node_count(); ++i) forces.set(i, network.masses[i] * gravity);
+  return forces;
+}
+
+// Substeps in which a cut spring still pulls, beyond the one that cut it.
+std::uint32_t fade_substeps(const StepSettings& settings, const StepCoefficients& coefficients) {
+  require_in_range("step.cut_fade", settings.cut_fade, 0, 1);
+  return static_cast<std::uint32_t>(std::max(std::floor(settings.cut_fade / coefficients.substep + 0.5) - 1, 0.0));
+}
+
+}  // namespace
+
+Simulation::Simulation(SimulationDef def)
+    : def_(checked(std::move(def))),
+      network_(make_network(def_.mesh, def_.material, def_.mass_rule, def_.fixed_nodes)),
+      coefficients_(make_coefficients(network_, def_.step.tau, def_.step.policy)),
+      squared_limits_(squared_length_limits(network_.rest_lengths, def_.material.length_limit)),
+      layout_hash_(hash_definition(def_)),
+      reference_energy_(reference_energy(network_)),
+      state_(make_rest_state(def_.mesh, network_)),
+      contacts_(def_.tools, def_.walls, network_.fixed, def_.step.contact_rule),
+      solver_(network_.node_count()),
+      intact_(network_.spring_count(), 1),
+      new_cuts_(network_.spring_count()),
+      fade_substeps_(fade_substeps(def_.step, coefficients_)),
+      start_poses_(def_.tools.size()),
+      wrenches_(def_.tools.size()),
+      history_(def_.tools.size()) {
+  state_.external = weights(network_, def_.gravity);
+  good_positions_ = good_velocities_ = state_.positions;
+  fading_.reserve(network_.spring_count());
+  before_solve_ = state_.positions;
+  counters_.guarded_nodes = coefficients_.guarded_nodes;
+}
+
+bool Simulation::accept(std::span<const Pose> poses) noexcept {
+  if (info_.status == Code::diverged) return false;
+  const bool good = poses.size() == def_.tools.size() && std::all_of(poses.begin(), poses.end(), is_valid);
+  info_.status = good ? Code{} : Code::bad_pose;
+  if (good) return true;
+  ++counters_.bad_poses;
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  return false;
+}
+
+void Simulation::begin_step() noexcept {
+  profile_ = {};
+  info_.flags = 0;
+  info_.new_cuts = 0;
+  for (std::size_t tool = 0; tool < start_poses_.size(); ++tool) start_poses_[tool] = contacts_.pose(tool);
+  good_positions_ = state_.positions;
+  good_velocities_ = state_.velocities;
+}
+
+// Eq (6): the tool feels the opposite of what it does to the nodes.
+void Simulation::sum_reaction() noexcept {
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  info_.contacts = 0;
+  for (const NodeConstraint& c : contacts_.constraints()) {
+    if (c.holder == kWorldHolder) continue;
+    Wrench& wrench = wrenches_[c.holder];
+    wrench.force -= c.reaction;
+    wrench.torque -= cross(c.point - contacts_.pose(c.holder).position, c.reaction);
+    info_.contacts += c.state != ContactState::released;
+  }
+  if (!def_.step.mean_force) return;
+  for (std::size_t tool = 0; tool < wrenches_.size(); ++tool) {  // Eq (7)
+    history_[tool][info_.step % 5] = wrenches_[tool];
+    wrenches_[tool] = {};
+    for (const Wrench& past : history_[tool]) {
+      wrenches_[tool].force += past.force / 5;
+      wrenches_[tool].torque += past.torque / 5;
+    }
+  }
+}
+
+void Simulation::finish_step() noexcept {
+  contacts_.remember(state_.positions);
+  if (coefficients_.guarded_nodes > 0) info_.flags |= kGuarded;
+  for (std::size_t tool = 0; tool < def_.tools.size(); ++tool) {
+    if (contacts_.jumped(tool)) info_.flags |= kToolJumped, ++counters_.tool_jumps;
+    if (!contacts_.engaged(tool)) info_.flags |= kContactSuspended;
+  }
+  counters_.suspended_steps += (info_.flags & kContactSuspended) != 0;
+  counters_.cuts += info_.new_cuts;
+  if (find_divergence()) return;
+  ++info_.step;
+  info_.time = static_cast<double>(info_.step) * (def_.step.tau * def_.step.iterations);
+}
+
+// A node that is not a number, farther than 1 km or faster than 1 km/s stops everything at the last good state.
+bool Simulation::find_divergence() noexcept {
+  constexpr double kMost = 1e3;
+  const auto within = [](double v) { return std::abs(v) <= kMost; };  // false for NaN
+  for (std::size_t i = 0; i < state_.positions.size(); ++i) {
+    const bool good = within(state_.positions.x[i]) && within(state_.positions.y[i]) && within(state_.positions.z[i]) &&
+                      within(state_.velocities.x[i]) && within(state_.velocities.y[i]) &&
+                      within(state_.velocities.z[i]);
+    if (good) continue;
+    state_.positions = good_positions_;
+    state_.velocities = good_velocities_;
+    std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+    info_.status = Code::diverged;
+    info_.bad_node = static_cast<std::uint32_t>(i);
+    return true;
+  }
+  return false;
+}
+
+void Simulation::reset() noexcept {
+  for (std::size_t i = 0; i < def_.mesh.node_count(); ++i) {
+    state_.positions.set(i, def_.mesh.positions[i]);
+    state_.velocities.set(i, Vec3::Zero());
+    state_.forces.set(i, Vec3::Zero());
+  }
+  state_.stiffnesses = network_.stiffnesses;
+  std::fill(intact_.begin(), intact_.end(), std::uint8_t{1});
+  fading_.clear();
+  contacts_.clear();
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  std::fill(history_.begin(), history_.end(), std::array<Wrench, 5>{});
+  info_ = {};
+  profile_ = {};
+  ledger_ = {};
+  counters_ = {};
+  counters_.guarded_nodes = coefficients_.guarded_nodes;
+}
+
+}  // namespace crumble
