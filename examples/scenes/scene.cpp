@@ -1,0 +1,202 @@
+#include "scenes/scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "crumble/base/file.hpp"
+#include "crumble/base/text.hpp"
+#include "crumble/base/transcendental.hpp"
+#include "crumble/bubblemesh/presets.hpp"
+#include "scenes/embedded.hpp"
+#include "scenes/fields.hpp"
+
+namespace crumble {
+namespace {
+
+BubbleMesh read_body(Fields body) {
+  if (body.has("paper")) {
+    const std::string name = body.text("paper");
+    body.finish();
+    for (const PaperBody paper : {PaperBody::cube, PaperBody::slab, PaperBody::globe, PaperBody::globe_literal}) {
+      if (name == paper_body_facts(paper).name) return generate_paper_body(paper);
+    }
+    Fields::fail(body.name("paper"), "must be cube, slab, globe or globe_literal, is " + name);
+  }
+  std::unique_ptr<Shape> shape;
+  if (body.has("box")) {
+    shape = make_box(body.vector("box"));
+  } else if (body.has("sphere")) {
+    shape = make_sphere(body.object("sphere").number("radius"));
+  } else if (body.has("cylinder")) {
+    Fields cylinder = body.object("cylinder");
+    shape = make_cylinder(cylinder.number("radius"), cylinder.number("height"));
+    cylinder.finish();
+  } else {
+    Fields::fail(body.name("paper"), "is missing, and so are box, sphere and cylinder: a body needs one of them");
+  }
+  BubbleMeshOptions options;
+  options.spacing = body.number("spacing");
+  options.offset = body.vector("offset", options.offset);
+  if (body.has("surface_nodes")) options.surface_nodes = body.count("surface_nodes");
+  if (body.has("inside_nodes")) options.inside_nodes = body.count("inside_nodes");
+  body.finish();
+  return generate(*shape, options);
+}
+
+Material read_material(Fields fields) {
+  Material material;
+  material.stiffness = fields.number("stiffness", material.stiffness);
+  material.damping_ratio = fields.number("damping_ratio", material.damping_ratio);
+  material.length_limit = fields.number("length_limit", material.length_limit);
+  material.mass = fields.number("mass", material.mass);
+  fields.finish();
+  return material;
+}
+
+Friction read_friction(Fields fields) {
+  const Friction friction{fields.number("static"), fields.number("dynamic")};
+  fields.finish();
+  return friction;
+}
+
+Wall read_wall(Fields fields) {
+  Wall wall{{normalized(fields.vector("normal")), fields.number("offset")}, {}};
+  if (fields.has("friction")) wall.friction = read_friction(fields.object("friction"));
+  fields.finish();
+  return wall;
+}
+
+Tool read_tool(Fields fields) {
+  Tool tool;
+  if (fields.has("round_stick")) {
+    Fields stick = fields.object("round_stick");
+    const double radius = stick.number("diameter") / 2, length = stick.number("length");
+    tool.shape = make_round_stick(radius, length, stick.has("sides") ? stick.count("sides") : 16);
+    stick.finish();
+  } else {
+    tool.shape = make_bar(fields.vector("bar"));
+  }
+  if (fields.has("friction")) tool.friction = read_friction(fields.object("friction"));
+  fields.finish();
+  return tool;
+}
+
+Quat read_turn(Fields& fields, const char* axis, const char* degrees) {
+  if (!fields.has(axis)) return Quat::Identity();
+  return axis_angle(normalized(fields.vector(axis)), fields.number(degrees) * kPi / 180);
+}
+
+double lowest(const ConvexPolyhedron& shape, const Quat& orientation) {
+  const Mat3 turn = rotation_matrix(orientation);
+  double least = rotate(turn, shape.vertices[0]).y();
+  for (const Vec3& v : shape.vertices) least = std::min(least, rotate(turn, v).y());
+  return least;
+}
+
+// Where the tool starts: `clearance` above the body, at x and z, turned.
+Pose read_start(Fields fields, const Scene& scene) {
+  Pose pose;
+  pose.orientation = read_turn(fields, "axis", "degrees");
+  const double clearance = fields.number("clearance", 0);
+  pose.position = {fields.number("x", 0), scene.top + clearance - lowest(scene.def.tools[0].shape, pose.orientation),
+                   fields.number("z", 0)};
+  fields.finish();
+  return pose;
+}
+
+WorkspaceOptions read_workspace(Fields fields) {
+  WorkspaceOptions workspace;
+  workspace.pose.position = fields.vector("position");
+  workspace.pose.orientation = read_turn(fields, "axis", "degrees");
+  workspace.mount = read_turn(fields, "mount_axis", "mount_degrees");
+  workspace.scale = fields.number("scale", 1);
+  workspace.force_gain = fields.number("force_gain", 1);
+  fields.finish();
+  return workspace;
+}
+
+void read_motion(Fields fields, const std::filesystem::path& folder, Scene& scene) {
+  if (fields.has("press")) {
+    Fields press = fields.object("press");
+    scene.press.speed = press.number("speed", scene.press.speed);
+    scene.press.depth = press.number("depth");
+    press.finish();
+  }
+  if (fields.has("replay")) {
+    Fields replay = fields.object("replay");
+    const std::string file = replay.text("file");
+    const bool beside = !folder.empty() && std::filesystem::exists(folder / file);
+    scene.trajectory = load_trajectory(beside ? (folder / file).string() : file);
+    if (replay.has("from")) scene.replay.from = replay.number("from");
+    if (replay.has("to")) scene.replay.to = replay.number("to");
+    scene.workspace = read_workspace(replay.object("workspace"));
+    replay.finish();
+  }
+  fields.finish();
+}
+
+Scene read_scene(Fields fields, const std::filesystem::path& folder, Preset preset) {
+  Scene scene;
+  scene.description = fields.text("description");
+  BubbleMesh body = read_body(fields.object("body"));
+  scene.def.mesh = std::move(body.mesh);
+  scene.quality = body.quality;
+  scene.warnings = std::move(body.warnings);
+  for (const Vec3& p : scene.def.mesh.positions) scene.top = std::max(scene.top, p.y());
+  if (fields.has("material")) scene.def.material = read_material(fields.object("material"));
+  if (fields.has("fixed_below")) scene.def.fixed_nodes = nodes_below(scene.def.mesh, fields.number("fixed_below"));
+  scene.def.gravity = fields.vector("gravity", scene.def.gravity);
+  if (fields.has("walls")) {
+    scene.def.walls.clear();
+    const nlohmann::json& walls = fields.at("walls");
+    for (std::size_t i = 0; i < walls.size(); ++i)
+      scene.def.walls.push_back(read_wall({walls[i], "walls[" + std::to_string(i) + "]"}));
+  }
+  scene.def.tools.push_back(read_tool(fields.object("tool")));
+  if (preset == Preset::paper) apply_paper_preset(scene.def);
+  scene.start = read_start(fields.object("start"), scene);
+  scene.press.start = scene.start;
+  scene.workspace.pose.position = scene.start.position;
+  scene.workspace.mount = scene.start.orientation;
+  read_motion(fields.object("motion"), folder, scene);
+  fields.finish();
+  return scene;
+}
+
+}  // namespace
+
+Trajectory load_trajectory(const std::string& name) {
+  if (const auto text = embedded_file(name + ".ctraj")) return parse_trajectory(*text, name);
+  return read_trajectory(name);
+}
+
+Scene load_scene(const std::string& name, Preset preset) {
+  const auto built_in = embedded_file(name + ".json");
+  if (!built_in && !std::filesystem::exists(name)) {
+    std::string list;
+    for (const std::string& each : scene_names()) list += " " + each;
+    throw Error(Code::io, "scene '" + name + "' is neither a file nor one of the built-in scenes:" + list);
+  }
+  const std::string text = built_in ? std::string(*built_in) : read_text(name);
+  try {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    const auto folder = built_in ? std::filesystem::path() : std::filesystem::absolute(name).parent_path();
+    Scene scene = read_scene({json, ""}, folder, preset);
+    scene.name = built_in ? name : std::filesystem::path(name).stem().string();
+    return scene;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(Code::format, "scene '" + name + "': " + error.what());
+  } catch (const Error& error) {
+    throw Error(error.code(), "scene '" + name + "': " + error.what());
+  }
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const std::string_view file : embedded_names()) {
+    if (file.ends_with(".json")) names.emplace_back(file.substr(0, file.size() - 5));
+  }
+  return names;
+}
+
+}  // namespace crumble

@@ -1,0 +1,42 @@
+// Scenes: a body, a tool, and the motion that moves it, as JSON. One library of them for tests, benchmarks and apps.
+//
+// docs/scenes.md is the reference of the format. SI units; angles in degrees.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "crumble/device/open.hpp"
+#include "crumble/device/workspace.hpp"
+#include "crumble/sim/simulation.hpp"
+#include "crumble/tetmesh/quality.hpp"
+
+namespace crumble {
+
+enum class Preset { standard, paper };
+
+struct Scene {
+  std::string name;
+  std::string description;
+  SimulationDef def;  // one tool
+  MeshQuality quality;
+  std::vector<std::string> warnings;  // of the mesh generator
+  Pose start;                         // of the tool
+  PressOptions press;                 // from `start`; the device where the scene names no trajectory
+  WorkspaceOptions workspace;         // from a trajectory's frame to the scene; at `start` when the scene does not say
+  std::optional<Trajectory> trajectory;
+  ReplayOptions replay;
+  double top = 0;  // y of the highest node at rest, metres: where the tool's depth is 0
+};
+
+/// `name` is a built-in scene or the path of a JSON file. Throws Error: io, format (JSON, unknown key, missing key,
+/// wrong type; names the key by its path), and what the parts refuse.
+Scene load_scene(const std::string& name, Preset preset);
+
+/// A trajectory by built-in name ("press_1mm_s") or path of a .ctraj file.
+Trajectory load_trajectory(const std::string& name);
+
+std::vector<std::string> scene_names();
+
+}  // namespace crumble
