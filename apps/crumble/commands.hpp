@@ -1,0 +1,13 @@
+// The subcommands; each adds itself to the command line and throws crumble::Error when it cannot do its work.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace crumble::app {
+
+void add_run(CLI::App& app);
+void add_mesh(CLI::App& app);
+void add_replay(CLI::App& app);
+void add_export(CLI::App& app);
+
+}  // namespace crumble::app

@@ -1,0 +1,129 @@
+#include "experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "crumble/base/clock.hpp"
+#include "crumble/base/text.hpp"
+#include "crumble/fracture/fragments.hpp"
+
+namespace crumble::app {
+namespace {
+
+std::unique_ptr<Device> open_press_device(const Scene& scene, const PressOptions& press) {
+  return open_press(press, scene.def.step.tau * scene.def.step.iterations);
+}
+
+StepCost percentiles(std::vector<double> seconds) {
+  if (seconds.empty()) return {};
+  std::sort(seconds.begin(), seconds.end());
+  const auto at = [&](double share) {
+    const auto last = static_cast<double>(seconds.size() - 1);
+    return 1e6 * seconds[static_cast<std::size_t>(std::ceil(share * last))];
+  };
+  return {at(0.5), at(0.99), at(0.999), at(1)};
+}
+
+// How many ticks a device will be read for: what the caller asked, else what the motion lasts.
+double duration(const Scene& scene, const std::string& device, const PressOptions& press,
+                const Trajectory* trajectory) {
+  if (!trajectory) return press.depth / press.speed;
+  const double first = scene.replay.from && device.empty() ? *scene.replay.from : trajectory->rows.front().time;
+  const double last = scene.replay.to && device.empty() ? *scene.replay.to : trajectory->rows.back().time;
+  return last - first;
+}
+
+struct Motion {
+  std::unique_ptr<Device> device;
+  WorkspaceOptions workspace;
+  double seconds = 0;
+};
+
+// A press moves in the scene's own frame; a replay in the trajectory's, which the scene's workspace places.
+Motion open_motion(const Scene& scene, const std::string& device) {
+  const double tick = scene.def.step.tau * scene.def.step.iterations;
+  const bool own_trajectory = device.empty() && scene.trajectory;
+  if (own_trajectory) {
+    return {open_replay(*scene.trajectory, scene.replay, tick), scene.workspace,
+            duration(scene, device, scene.press, &*scene.trajectory)};
+  }
+  PressOptions press = scene.press;
+  if (device.starts_with("press:")) {
+    const auto speed = parse_double(std::string_view(device).substr(6));
+    if (!speed) throw Error(Code::format, "--device '" + device + "': press:MM_PER_S takes a number");
+    press.speed = *speed * 1e-3;
+    require_positive("--device press:MM_PER_S", press.speed);
+  } else if (device.starts_with("replay:")) {
+    const Trajectory trajectory = load_trajectory(device.substr(7));
+    WorkspaceOptions workspace;
+    workspace.pose.position = scene.start.position;
+    workspace.mount = scene.start.orientation;
+    return {open_replay(trajectory, {}, tick), workspace, duration(scene, device, press, &trajectory)};
+  } else if (!device.empty()) {
+    throw Error(Code::unsupported, "--device '" + device + "' is not known; there are press:MM_PER_S and replay:FILE");
+  }
+  return {open_press_device(scene, press), {}, duration(scene, device, press, nullptr)};
+}
+
+}  // namespace
+
+double tool_depth(const Scene& scene, const Pose& pose) {
+  const Frame frame(pose);
+  double lowest = frame.to_scene(scene.def.tools[0].shape.vertices[0]).y();
+  for (const Vec3& v : scene.def.tools[0].shape.vertices) lowest = std::min(lowest, frame.to_scene(v).y());
+  return scene.top - lowest;
+}
+
+std::size_t count_fragments(const Simulation& sim) {
+  return FragmentLabeler(sim.mesh().node_count(), sim.mesh().springs).label(sim.intact());
+}
+
+std::size_t count_inverted(const Simulation& sim) {
+  const VecView x = sim.positions();
+  const auto inverted = [&](const Tetrahedron& t) { return orient(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) < 0; };
+  return static_cast<std::size_t>(std::count_if(sim.mesh().tetrahedra.begin(), sim.mesh().tetrahedra.end(), inverted));
+}
+
+Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
+                          const std::function<void(double)>& progress) {
+  if (seconds) require_positive("--seconds", *seconds);
+  Motion motion = open_motion(scene, device);
+  const Workspace workspace(motion.workspace);
+  Simulation sim(scene.def);
+  Experiment experiment(std::move(scene), std::move(sim));
+  experiment.device = motion.device->info().name;
+
+  const double tick = experiment.scene.def.step.tau * experiment.scene.def.step.iterations;
+  const auto steps = static_cast<std::size_t>(std::floor(seconds.value_or(motion.seconds) / tick + 1.5));
+  experiment.samples.reserve(steps);
+  std::vector<double> cpu;
+  cpu.reserve(steps);
+  DeviceSample sample;
+  for (std::size_t step = 0; step < steps; ++step) {
+    const ReadStatus status = motion.device->read(sample);
+    if (status == ReadStatus::lost) throw Error(Code::device_lost, "device '" + experiment.device + "' was lost");
+    experiment.resampled |= (sample.flags & sample_flag::kResampled) != 0;
+    const Pose pose = workspace.to_scene(sample.pose);
+
+    const double before = thread_cpu_seconds();
+    const StepInfo& info = experiment.sim.step({&pose, 1});
+    cpu.push_back(thread_cpu_seconds() - before);
+    if (info.status == Code::diverged) {
+      throw Error(Code::diverged,
+                  "the body diverged at step " + std::to_string(info.step) + ", node " + std::to_string(info.bad_node));
+    }
+    if (info.status != Code{}) throw Error(info.status, "step " + std::to_string(step) + " was refused: bad pose");
+
+    const Wrench& wrench = experiment.sim.wrench(0);
+    motion.device->write(workspace.force_to_device(wrench.force), workspace.torque_to_device(wrench.torque));
+    experiment.recording.add({&pose, 1}, experiment.sim.state_hash());
+    experiment.samples.push_back(
+        {info.time, tool_depth(experiment.scene, pose), wrench, experiment.sim.counters().cuts});
+    experiment.peak_force = std::max(experiment.peak_force, norm(wrench.force));
+    if (progress && step % 256 == 0) progress(static_cast<double>(step) / static_cast<double>(steps));
+  }
+  experiment.cost = percentiles(std::move(cpu));
+  return experiment;
+}
+
+}  // namespace crumble::app

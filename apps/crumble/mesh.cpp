@@ -1,0 +1,129 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "crumble/base/clock.hpp"
+#include "crumble/base/error.hpp"
+#include "crumble/bubblemesh/presets.hpp"
+#include "crumble/tetmesh/vtk_file.hpp"
+#include "render/mesh_file.hpp"
+
+namespace crumble::app {
+namespace {
+
+struct MeshOptions {
+  std::string shape, out, lattice = "hcp";
+  std::vector<double> sizes, offset;
+  std::optional<double> spacing;
+  std::optional<std::uint32_t> surface_nodes, inside_nodes;
+  bool json = false;
+};
+
+double size_at(const MeshOptions& options, std::size_t i, const char* usage) {
+  if (i >= options.sizes.size()) throw Error(Code::format, "mesh " + options.shape + " takes " + usage + ", metres");
+  return options.sizes[i];
+}
+
+std::unique_ptr<Shape> make_shape(const MeshOptions& options) {
+  if (options.shape == "box") {
+    const char* usage = "X Y Z";
+    return make_box({size_at(options, 0, usage), size_at(options, 1, usage), size_at(options, 2, usage)});
+  }
+  if (options.shape == "sphere") return make_sphere(size_at(options, 0, "RADIUS"));
+  if (options.shape == "cylinder")
+    return make_cylinder(size_at(options, 0, "RADIUS HEIGHT"), size_at(options, 1, "RADIUS HEIGHT"));
+  for (const PaperBody body : {PaperBody::cube, PaperBody::slab, PaperBody::globe, PaperBody::globe_literal}) {
+    if (options.shape == paper_body_facts(body).name) return make_paper_shape(body);
+  }
+  throw Error(Code::unsupported, "mesh '" + options.shape +
+                                     "' is not known; there are: box sphere cylinder cube slab globe globe_literal");
+}
+
+BubbleMeshOptions bubble_options(const MeshOptions& options) {
+  BubbleMeshOptions bubble;
+  for (const PaperBody body : {PaperBody::cube, PaperBody::slab, PaperBody::globe, PaperBody::globe_literal}) {
+    if (options.shape == paper_body_facts(body).name) bubble = paper_options(body);
+  }
+  if (options.spacing) bubble.spacing = *options.spacing;
+  if (options.offset.size() == 3) bubble.offset = {options.offset[0], options.offset[1], options.offset[2]};
+  if (options.lattice != "hcp" && options.lattice != "fcc") {
+    throw Error(Code::unsupported, "--lattice '" + options.lattice + "' is not known; there are: hcp fcc");
+  }
+  if (options.lattice == "fcc") bubble.lattice = Lattice::fcc;
+  if (options.surface_nodes) bubble.surface_nodes = options.surface_nodes;
+  if (options.inside_nodes) bubble.inside_nodes = options.inside_nodes;
+  return bubble;
+}
+
+void write_mesh(const TetMesh& mesh, const std::filesystem::path& path) {
+  if (path.extension() == ".vtk") {
+    write_vtk(mesh, path);
+  } else if (render::mesh_file_extensions().find(path.extension().string()) != std::string::npos &&
+             path.has_extension()) {
+    render::write_mesh_file({mesh.positions, mesh.boundary}, {}, path);
+  } else {
+    throw Error(Code::unsupported, "--out '" + path.string() + "': the mesh is written as .vtk, its surface as " +
+                                       render::mesh_file_extensions());
+  }
+}
+
+nlohmann::ordered_json to_json(const BubbleMesh& body, double seconds) {
+  const TetMesh& mesh = body.mesh;
+  const MeshQuality& q = body.quality;
+  return {{"nodes", mesh.node_count()},
+          {"surface_nodes", mesh.surface_node_count()},
+          {"springs", mesh.springs.size()},
+          {"tetrahedra", mesh.tetrahedra.size()},
+          {"dihedral_min_degrees", q.dihedral_min},
+          {"dihedral_max_degrees", q.dihedral_max},
+          {"slivers", q.slivers},
+          {"volume_length_min", q.volume_length_min},
+          {"volume_length_mean", q.volume_length_mean},
+          {"edge_min_m", q.edge_min},
+          {"edge_mean_m", q.edge_mean},
+          {"edge_max_m", q.edge_max},
+          {"edge_variation", q.edge_variation},
+          {"euler_defect", q.euler_defect},
+          {"boundary_defects", q.boundary_defects.total()},
+          {"volume_m3", volume(mesh)},
+          {"volume_error", body.volume_error},
+          {"cpu_s", seconds},
+          {"warnings", body.warnings}};
+}
+
+void mesh(const MeshOptions& options) {
+  const std::unique_ptr<Shape> shape = make_shape(options);
+  const double before = thread_cpu_seconds();
+  const BubbleMesh body = generate(*shape, bubble_options(options));
+  const double seconds = thread_cpu_seconds() - before;
+  if (!options.out.empty()) write_mesh(body.mesh, options.out);
+  const nlohmann::ordered_json json = to_json(body, seconds);
+  if (options.json) {
+    std::puts(json.dump(1).c_str());
+  } else {
+    for (const auto& [key, value] : json.items()) std::printf("%-22s %s\n", key.c_str(), value.dump().c_str());
+  }
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app) {
+  auto* command = app.add_subcommand("mesh", "Mesh a shape by close-packed bubbles and report its quality");
+  auto options = std::make_shared<MeshOptions>();
+  command
+      ->add_option(
+          "shape", options->shape,
+          "box X Y Z, sphere RADIUS, cylinder RADIUS HEIGHT (metres), or the paper's cube, slab, globe, globe_literal")
+      ->required();
+  command->add_option("sizes", options->sizes, "Sizes of the shape, metres");
+  command->add_option("--spacing", options->spacing, "Distance between neighbouring nodes, metres");
+  command->add_option("--surface-nodes", options->surface_nodes, "Exact number of nodes on the surface");
+  command->add_option("--inside-nodes", options->inside_nodes, "Exact number of nodes inside");
+  command->add_option("--lattice", options->lattice, "hcp or fcc")->capture_default_str();
+  command->add_option("--offset", options->offset, "Shift of the lattice, in spacings")->expected(3);
+  command->add_option("--out", options->out, "Mesh as .vtk, or its surface as " + render::mesh_file_extensions());
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->callback([options] { mesh(*options); });
+}
+
+}  // namespace crumble::app

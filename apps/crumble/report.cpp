@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "output.hpp"
+#include "render/text_curve.hpp"
+
+namespace crumble::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// How often 300 Hz fits into the 99th percentile of a step's CPU time.
+double rate_multiple(const StepCost& cost) {
+  return 1e6 / (cost.p99 * 300);
+}
+
+Json to_array(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json counters(const Experiment& experiment) {
+  const Counters& c = experiment.sim.counters();
+  return {{"guarded_nodes", c.guarded_nodes},
+          {"substeps_per_step", experiment.sim.coefficients().substeps},
+          {"tool_jumps", c.tool_jumps},
+          {"suspended_steps", c.suspended_steps},
+          {"bad_poses", c.bad_poses},
+          {"inverted_tetrahedra", count_inverted(experiment.sim)},
+          {"clamped", 0},
+          {"truncated", 0},
+          {"dropped", 0}};
+}
+
+Json ledger(const EnergyLedger& l) {
+  return {{"stored_j", l.stored},
+          {"tool_work_j", l.tool_work},
+          {"external_work_j", l.external_work},
+          {"dissipated_j", l.dissipated},
+          {"cut_j", l.cut}};
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown processor";
+}
+
+template <class... Values>
+std::string line(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string curve(const Experiment& experiment) {
+  const bool over_time = experiment.scene.trajectory.has_value();
+  std::vector<double> x, y;
+  for (const Sample& s : experiment.samples) {
+    x.push_back(over_time ? s.time : 1e3 * s.depth);
+    y.push_back(norm(s.wrench.force));
+  }
+  return render::text_curve(x, y, 76, 10, {over_time ? "time, s" : "depth, mm", "force on the stick, N"});
+}
+
+}  // namespace
+
+std::string hash_text(std::uint64_t hash) {
+  return line("%016llx", static_cast<unsigned long long>(hash));
+}
+
+std::string to_json(const Experiment& experiment, const Rerun& again) {
+  const TetMesh& mesh = experiment.sim.mesh();
+  Json json;
+  json["scene"] = experiment.scene.name;
+  json["device"] = experiment.device;
+  json["resampled"] = experiment.resampled;
+  json["nodes"] = mesh.node_count();
+  json["surface_nodes"] = mesh.surface_node_count();
+  json["springs"] = mesh.springs.size();
+  json["tetrahedra"] = mesh.tetrahedra.size();
+  json["tau_s"] = experiment.scene.def.step.tau;
+  json["steps"] = experiment.samples.size();
+  json["cuts"] = experiment.sim.counters().cuts;
+  json["fragments"] = count_fragments(experiment.sim);
+  json["peak_force_n"] = experiment.peak_force;
+  Json force = Json::array();
+  for (const Sample& s : experiment.samples) {
+    force.push_back({{"time_s", s.time},
+                     {"depth_mm", 1e3 * s.depth},
+                     {"force_n", to_array(s.wrench.force)},
+                     {"torque_nm", to_array(s.wrench.torque)}});
+  }
+  json["force"] = std::move(force);
+  const StepCost& cost = experiment.cost;
+  json["step_cpu_us"] = {{"p50", cost.p50}, {"p99", cost.p99}, {"p99_9", cost.p99_9}, {"max", cost.max}};
+  json["rate_multiple_of_300hz"] = rate_multiple(cost);
+  json["energy_gain_max_relative"] = again.ledger.gain_max_relative;
+  json["energy_ledger"] = ledger(again.ledger);
+  json["precision"] = "float64";
+  json["kernel"] = "reference";
+  json["threads"] = 1;
+  json["state_hash"] = hash_text(experiment.sim.state_hash());
+  json["counters"] = counters(experiment);
+  json["warnings"] = experiment.scene.warnings;
+  return json.dump(1) + "\n";
+}
+
+std::string to_report(const Experiment& experiment, const Rerun& again, const std::filesystem::path& folder) {
+  const TetMesh& mesh = experiment.sim.mesh();
+  const Material& m = experiment.scene.def.material;
+  const StepSettings& step = experiment.scene.def.step;
+  std::string text;
+  text += line("%s: %s\n\n", experiment.scene.name.c_str(), experiment.scene.description.c_str());
+  text += line("machine     %s\n", processor().c_str());
+  text += line(
+      "mesh        %zu nodes (%zu on the surface), %zu springs, %zu tetrahedra, dihedral angles %.1f to %.1f degrees\n",
+      mesh.node_count(), mesh.surface_node_count(), mesh.springs.size(), mesh.tetrahedra.size(),
+      experiment.scene.quality.dihedral_min, experiment.scene.quality.dihedral_max);
+  text += line("material    k = %g N/m, alpha = %g, l_p = %g, %g g; step of %g ms\n", m.stiffness, m.damping_ratio,
+               m.length_limit, 1e3 * m.mass, 1e3 * step.tau);
+  text += line("motion      %s%s, %zu steps\n", experiment.device.c_str(), experiment.resampled ? ", resampled" : "",
+               experiment.samples.size());
+  text += line("step        CPU p50 %.1f us, p99 %.1f us, max %.1f us: %.0f times the 300 Hz that a hand needs\n",
+               experiment.cost.p50, experiment.cost.p99, experiment.cost.max, rate_multiple(experiment.cost));
+  text += line("fracture    %llu springs cut, %zu fragments\n",
+               static_cast<unsigned long long>(experiment.sim.counters().cuts), count_fragments(experiment.sim));
+  text += line("force       peak %.2f N\n", experiment.peak_force);
+  text +=
+      line("energy      greatest gain of a solve %.1e of the scale; %llu nodes guarded\n",
+           again.ledger.gain_max_relative, static_cast<unsigned long long>(experiment.sim.counters().guarded_nodes));
+  text += line("state hash  %s, the same in a second run\n\n", hash_text(experiment.sim.state_hash()).c_str());
+  for (const std::string& warning : experiment.scene.warnings) text += "warning: " + warning + "\n";
+  text += curve(experiment);
+  if (!folder.empty()) {
+    text += "\npictures    " + (folder / "phases.png").string() + "\n            " + (folder / "force.svg").string() +
+            "\nall files   " + folder.string() + "\n";
+  }
+  return text;
+}
+
+}  // namespace crumble::app

@@ -1,0 +1,68 @@
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "output.hpp"
+
+namespace crumble::app {
+namespace {
+
+struct RunOptions {
+  std::string scene, device, preset = "default", precision = "float64", kernel = "reference";
+  std::optional<double> seconds, tau;
+  int threads = 1;
+  std::string out;
+  bool json = false;
+};
+
+void require_one_of(const std::string& option, const std::string& value, const std::string& known) {
+  if (value != known) {
+    throw Error(Code::unsupported, option + " '" + value + "' is not in this build, which has: " + known);
+  }
+}
+
+void show_progress(double share) {
+  if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r%3.0f %%", 100 * share);
+}
+
+void run(const RunOptions& options) {
+  require_one_of("--precision", options.precision, "float64");
+  require_one_of("--kernel", options.kernel, "reference");
+  require_one_of("--threads", std::to_string(options.threads), "1");
+  if (options.preset != "default" && options.preset != "paper") {
+    throw Error(Code::unsupported, "--preset '" + options.preset + "' is not known; there are: default paper");
+  }
+  Scene scene = load_scene(options.scene, options.preset == "paper" ? Preset::paper : Preset::standard);
+  if (options.tau) scene.def.step.tau = *options.tau;
+  const Experiment experiment = run_experiment(std::move(scene), options.device, options.seconds, show_progress);
+  const Rerun again =
+      rerun(experiment.recording, options.out.empty() ? std::vector<std::size_t>{} : phase_steps(experiment.samples));
+  if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
+  if (!options.out.empty()) write_outputs(experiment, again, options.out);
+  const std::string text = options.json ? to_json(experiment, again) : to_report(experiment, again, options.out);
+  std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto* command = app.add_subcommand("run", "Run a scene and report force, fracture and step time");
+  auto options = std::make_shared<RunOptions>();
+  std::string names;
+  for (const std::string& name : scene_names()) names += " " + name;
+  command->add_option("scene", options->scene, "JSON file or built-in scene:" + names)->required();
+  command->add_option("--device", options->device, "press:MM_PER_S or replay:FILE; else what the scene says");
+  command->add_option("--seconds", options->seconds, "Simulated time; else until the motion is over");
+  command->add_option("--dt", options->tau, "Time step tau, s");
+  command->add_option("--preset", options->preset, "default or paper")->capture_default_str();
+  command->add_option("--precision", options->precision, "float64")->capture_default_str();
+  command->add_option("--kernel", options->kernel, "reference")->capture_default_str();
+  command->add_option("--threads", options->threads, "1")->capture_default_str();
+  command->add_option("--out", options->out,
+                      "Folder for force.csv, force.svg, phases.png, surface_*.ply, experiment.crec");
+  command->add_flag("--json", options->json, "Print one JSON object instead of the report");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace crumble::app
