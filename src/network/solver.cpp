@@ -62,6 +62,33 @@ void advance(const StepCoefficients& c, std::vector<double>& x, std::vector<doub
   }
 }
 
+// Eqs (3) and (4) along the surface: where a node that slides under `reaction` gets to.
+void slide(const StepCoefficients& c, const NodeConstraint& held, const Vec3& force, Vec3& position, Vec3& velocity) {
+  const Vec3 net = force + held.reaction;  // tangential
+  const double across = dot(velocity, held.normal);
+  const Vec3 sliding = velocity - across * held.normal;
+  position += c.drift[held.node] * sliding + c.force_gain[held.node] * net;
+  velocity = (c.decay[held.node] * sliding + c.velocity_gain[held.node] * net) + across * held.normal;
+}
+
+// Friction opposes sliding past the surface, which is not always the way the springs pull: a surface that moves that
+// way too, faster than the node could slide, carries the node (it sticks, at the edge of the cone), and one that is
+// faster still drags it on.
+void oppose_sliding(const StepCoefficients& c, NodeConstraint& held, const Vec3& force, const Vec3& velocity) {
+  const double pressing = -dot(force, held.normal);
+  const Vec3 along = normalized(force + pressing * held.normal);
+  const double friction = held.dynamic_friction * pressing;
+  const double surface = c.substep * dot(held.velocity, along);
+  const double loose = c.drift[held.node] * dot(velocity, along) + c.force_gain[held.node] * dot(force, along);
+  const double reach = c.force_gain[held.node] * friction;
+  if (loose - reach >= surface) return;
+  if (loose + reach <= surface) {
+    held.reaction = pressing * held.normal + friction * along;
+  } else {
+    held.state = ContactState::stick;
+  }
+}
+
 }  // namespace
 
 void ExponentialSolver::solve(const SpringNetwork& network, const StepCoefficients& coefficients, NetworkState& state,
@@ -71,15 +98,11 @@ void ExponentialSolver::solve(const SpringNetwork& network, const StepCoefficien
 
   // where the held nodes go is worked out before the pass over all nodes and written after it
   for (std::size_t k = 0; k < constraints.size(); ++k) {
-    const NodeConstraint& c = constraints[k];
+    NodeConstraint& c = constraints[k];
+    const Vec3 force = state.forces[c.node];
     held_[k] = {state.positions[c.node], state.velocities[c.node]};
-    if (c.state != ContactState::slip) continue;
-    const Vec3 net = state.forces[c.node] + c.reaction;  // tangential
-    const double across = dot(held_[k].velocity, c.normal);
-    const Vec3 sliding = held_[k].velocity - across * c.normal;
-    held_[k].position += coefficients.drift[c.node] * sliding + coefficients.force_gain[c.node] * net;
-    held_[k].velocity =
-        (coefficients.decay[c.node] * sliding + coefficients.velocity_gain[c.node] * net) + across * c.normal;
+    if (c.state == ContactState::slip) oppose_sliding(coefficients, c, force, held_[k].velocity);
+    if (c.state == ContactState::slip) slide(coefficients, c, force, held_[k].position, held_[k].velocity);
   }
   advance(coefficients, state.positions.x, state.velocities.x, state.forces.x);
   advance(coefficients, state.positions.y, state.velocities.y, state.forces.y);

@@ -81,6 +81,7 @@ struct Violence {
       c.static_friction = random.uniform(0, 2);
       c.dynamic_friction = c.static_friction * random.uniform();
       c.state = static_cast<ContactState>(random.below(3));
+      c.velocity = random_vector(random, std::pow(10.0, random.uniform(-3, 1)));
       constraints.push_back(c);
     }
   }
@@ -182,6 +183,35 @@ TEST(Contacts, StickSlipReleaseByTheCone) {
   EXPECT_EQ(filter({3.1, -1, 0}, S::stick).state, S::slip);
   EXPECT_LT(norm(filter({2.9, -1, 0}, S::stick).reaction - Vec3(-2.9, 1, 0)), 1e-15);
   EXPECT_LT(norm(filter({3.1, -1, 0}, S::stick).reaction - Vec3(-1.5, 1, 0)), 1e-15);
+}
+
+// Whatever the tool does: friction takes energy out of the sliding, never puts it in.
+TEST(Contacts, FrictionOpposesSlidingPastTheSurface) {
+  Random random(17);
+  int carried = 0, dragged = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Violence v(random, random.uniform(0, 30));
+    const double tau = 1e-3;
+    const VecArray from = v.state.positions;
+    ExponentialSolver solver(v.network.node_count());
+    solver.solve(v.network, make_coefficients(v.network, tau, TimeStepPolicy::guard), v.state, v.constraints);
+    for (const NodeConstraint& c : v.constraints) {
+      const Vec3 force = v.state.forces[c.node];
+      const double pressing = -dot(force, c.normal);
+      const Vec3 friction = c.reaction - pressing * c.normal;
+      if (c.state == ContactState::slip) {
+        const Vec3 past = v.state.positions[c.node] - from[c.node] - tau * c.velocity;
+        ASSERT_LE(dot(friction, past), 1e-12 * norm(friction) * norm(past));
+        ASSERT_NEAR(norm(friction), c.dynamic_friction * pressing, 1e-9 * pressing);
+        dragged += dot(friction, force) > 0;
+      } else if (c.state == ContactState::stick) {
+        ASSERT_LE(norm(friction), c.static_friction * pressing * (1 + 1e-12));  // within the cone
+        carried += norm(force + pressing * c.normal) > c.static_friction * pressing;
+      }
+    }
+  }
+  EXPECT_GT(carried, 20);
+  EXPECT_GT(dragged, 100);
 }
 
 TEST(Solver, NeverNaNAtAnyMaterialUnderTheGuard) {
