@@ -21,11 +21,11 @@ std::size_t cut_springs(VecView positions, std::span<const Edge> springs, std::s
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const auto [a, b] = springs[s];
     const double squared_length = squared_norm(positions[b] - positions[a]);
-    const bool is_cut = (intact[s] != 0) & (squared_length > squared_limits[s]);
-    // Written always and counted only when cut: no branch to mispredict in a burst.
+    // Without a branch to mispredict in a burst: the id is written always and counted only when the spring is cut.
+    const unsigned is_cut = unsigned{squared_length > squared_limits[s]} & intact[s];
     newly_cut[count] = static_cast<std::uint32_t>(s);
     count += is_cut;
-    intact[s] = static_cast<std::uint8_t>(intact[s] & !is_cut);
+    intact[s] = static_cast<std::uint8_t>(intact[s] ^ is_cut);
   }
   return count;
 }
