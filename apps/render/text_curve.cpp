@@ -11,6 +11,8 @@
 namespace crumble::render {
 namespace {
 
+constexpr double kGreatest = 1e100;  // beyond it, and below its inverse, steps of the axes would leave double's range
+
 struct Range {
   double least, greatest;
 };
@@ -36,7 +38,7 @@ struct Axis {
 Axis round_axis(std::span<const double> values, double intervals) {
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   const double lower = std::min(0.0, *least), upper = std::max(0.0, *greatest);
-  if (lower == upper) return {{0, intervals}, 1};
+  if (upper - lower < 1 / kGreatest) return {{0, intervals}, 1};
   double step = 0.999 * (upper - lower) / intervals;
   for (;;) {
     step = next_round(step);
@@ -91,8 +93,8 @@ void check_input(std::span<const double> x, std::span<const double> y, int width
                 "y must have " + std::to_string(x.size()) + " values like x, has " + std::to_string(y.size()));
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
-    require_finite("x[" + std::to_string(i) + "]", x[i]);
-    require_finite("y[" + std::to_string(i) + "]", y[i]);
+    require_in_range("x[" + std::to_string(i) + "]", x[i], -kGreatest, kGreatest);
+    require_in_range("y[" + std::to_string(i) + "]", y[i], -kGreatest, kGreatest);
   }
 }
 
@@ -105,7 +107,7 @@ void ink_curve(Canvas& canvas, std::span<const double> columns, std::span<const 
     const double slope = from == to ? 0 : (rows[i] - rows[before]) / (columns[i] - columns[before]);
     for (int column = from;; column += step) {
       const auto row_at = [&](double at) {
-        const double row = column == to && at == columns[i] ? rows[i] : rows[before] + slope * (at - columns[before]);
+        const double row = rows[before] + slope * (at - columns[before]);
         return nearest(std::clamp(row, std::min(rows[before], rows[i]), std::max(rows[before], rows[i])));
       };
       if (from == to)

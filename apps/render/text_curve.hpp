@@ -14,8 +14,8 @@ struct CurveLabels {
 /// A graph of y over x from braille dots (2 x 4 per character): `height` lines of `width` characters with y's numbers
 /// on the left, then x's axis with its numbers. Every column of dots is inked from the least to the greatest y that it
 /// meets, so a drop between two columns is never lost. Ends with a newline; contains no escape codes.
-/// Throws Error: empty, invalid_value (x and y differ in length, a value that is not finite), out_of_range (width not
-/// in [20, 400], height not in [3, 100]).
+/// Throws Error: empty, invalid_value (x and y differ in length, a value that is not finite), out_of_range (a value
+/// beyond 1e100, width not in [20, 400], height not in [3, 100]).
 std::string text_curve(std::span<const double> x, std::span<const double> y, int width, int height,
                        const CurveLabels& labels);
 

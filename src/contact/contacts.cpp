@@ -58,13 +58,10 @@ Contacts::Contacts(std::vector<Tool> tools, std::vector<Wall> walls, std::span<c
     check(tool.friction);
   }
   for (const Wall& wall : walls_) check(wall);
-  reserve();
-  taken_.assign(fixed_.size(), 0);
-}
-
-void Contacts::reserve() {
+  // at most one contact per node: nothing grows later
   constraints_.reserve(fixed_.size()), previous_.reserve(fixed_.size());
   places_.reserve(fixed_.size()), previous_places_.reserve(fixed_.size());
+  taken_.assign(fixed_.size(), 0);
 }
 
 void Contacts::move_tool(std::size_t tool, const Pose& target, double tau) noexcept {
@@ -212,17 +209,12 @@ void Contacts::project(VecSpan positions, VecSpan velocities) noexcept {
   }
 }
 
-void Contacts::remember(VecView positions) noexcept {
+void Contacts::drop_released() noexcept {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
-    const NodeConstraint& c = constraints_[k];
-    if (c.state == ContactState::released) continue;
-    if (c.state == ContactState::slip) {
-      const Vec3 now = positions[c.node];
-      places_[k].anchor = c.holder == kWorldHolder ? now : Frame(motions_[c.holder].to).to_local(now);
-    }
+    if (constraints_[k].state == ContactState::released) continue;
     places_[kept] = places_[k];
-    constraints_[kept++] = c;
+    constraints_[kept++] = constraints_[k];
   }
   constraints_.resize(kept);
   places_.resize(kept);

@@ -52,7 +52,6 @@ void Contacts::save(ByteWriter& out) const {
 
 void Contacts::load(ByteReader& in) {
   clear();
-  reserve();
   for (Motion& m : motions_) {
     m.to.position = get_vector(in);
     const double w = get_finite(in), x = get_finite(in), y = get_finite(in), z = get_finite(in);

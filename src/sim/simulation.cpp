@@ -114,7 +114,7 @@ void Simulation::sum_reaction() noexcept {
 }
 
 void Simulation::finish_step() noexcept {
-  contacts_.remember(state_.positions);
+  contacts_.drop_released();
   if (coefficients_.guarded_nodes > 0) info_.flags |= kGuarded;
   for (std::size_t tool = 0; tool < def_.tools.size(); ++tool) {
     if (contacts_.jumped(tool)) info_.flags |= kToolJumped, ++counters_.tool_jumps;

@@ -141,6 +141,21 @@ TEST(Step, AllocatesNothingWithCutsAndContactChanges) {
   EXPECT_GT(rig.sim.counters().cuts, 100u);
 }
 
+TEST(Step, NorDoesACopyOrARestoredOne) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "a sanitizer owns malloc";
+  PressRig rig("tofu_cube", Preset::standard, 0.02);
+  rig.press_to(0.002);
+  PressRig copy(rig), restored;
+  restored.speed = rig.speed;
+  restored.sim.restore(rig.sim.snapshot());
+  for (PressRig* each : {&copy, &restored}) {
+    const AllocationCounter counter;
+    while (each->speed * each->sim.info().time < 0.018) each->press();
+    EXPECT_EQ(counter.count(), 0u);
+  }
+  EXPECT_EQ(copy.sim.state_hash(), restored.sim.state_hash());
+}
+
 TEST(Step, ABadPoseMovesNothingAndGivesNoForce) {
   PressRig rig;
   rig.press_to(0.005);

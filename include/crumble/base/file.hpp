@@ -25,7 +25,9 @@ void replace_file(const std::filesystem::path& path, Write&& write) {
   temporary += ".part";
   try {
     write(temporary);
-    std::filesystem::rename(temporary, path);
+    std::error_code error;
+    std::filesystem::rename(temporary, path, error);
+    if (error) throw Error(Code::io, "cannot write '" + path.string() + "': " + error.message());
   } catch (const std::filesystem::filesystem_error& error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);

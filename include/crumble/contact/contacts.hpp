@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/reserved_vector.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/contact/tool.hpp"
 #include "crumble/tetmesh/node_constraint.hpp"
@@ -36,8 +37,8 @@ class Contacts {
   /// For stage 3; in order of holder, then of entry.
   std::span<NodeConstraint> constraints() noexcept { return constraints_; }
   std::span<const NodeConstraint> constraints() const noexcept { return constraints_; }
-  /// After stage 3: forgets released contacts and notes where the others are now.
-  void remember(VecView positions) noexcept;
+  /// At the end of a step: forgets the contacts that the solver released.
+  void drop_released() noexcept;
 
   std::span<const Tool> tools() const noexcept { return tools_; }
   const Pose& pose(std::size_t tool) const noexcept { return motions_[tool].to; }
@@ -69,8 +70,6 @@ class Contacts {
     std::uint32_t face = 0;
   };
 
-  // At most one contact per node: nothing grows later. Again at load, since a copy of a vector loses its reserve.
-  void reserve();
   void find_of_tool(std::uint32_t tool, std::uint32_t place, VecView positions) noexcept;
   void find_of_walls(VecView positions) noexcept;
   bool place_on_tool(const Tool& tool, const Motion& motion, const Frame& frame, double keep_gap, const Vec3& local,
@@ -83,8 +82,8 @@ class Contacts {
   std::vector<Motion> motions_;
   std::vector<std::uint8_t> fixed_;
   ContactRule rule_;
-  std::vector<NodeConstraint> constraints_, previous_;
-  std::vector<Place> places_, previous_places_;
+  ReservedVector<NodeConstraint> constraints_, previous_;
+  ReservedVector<Place> places_, previous_places_;
   std::vector<std::uint8_t> taken_;  // nodes that have a holder in this find
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/reserved_vector.hpp"
 #include "crumble/contact/contacts.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/network/energy.hpp"
@@ -130,7 +131,7 @@ class Simulation {
   ExponentialSolver solver_;
   std::vector<std::uint8_t> intact_;  // 1 intact, 0 cut (spring_count)
   std::vector<std::uint32_t> new_cuts_;
-  std::vector<Fading> fading_;                 // cut springs that still pull, oldest first
+  ReservedVector<Fading> fading_;              // cut springs that still pull, oldest first
   std::uint32_t fade_substeps_;                // how long each of them does
   std::vector<Pose> start_poses_;              // of the tools, at the start of the step
   VecArray good_positions_, good_velocities_;  // of the step before: where a diverged body freezes
