@@ -55,14 +55,17 @@ Rerun rerun(const Recording& recording, const std::vector<std::size_t>& steps) {
       refreshed = now.info().time;
       camera.refresh(now);
     }
-    if (std::find(steps.begin(), steps.end(), step) != steps.end()) {
-      result.captures.push_back(camera.take(now, step, recording.poses(step)[0]));
+    const auto wanted = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), step));
+    if (wanted > 0) {
+      const Pose tool = recording.tool_count() > 0 ? recording.poses(step)[0] : Pose{};
+      result.captures.insert(result.captures.end(), wanted, camera.take(now, step, tool));
     }
     ++step;
     return true;
   });
   if (differs) {
-    throw Error(Code::diverged, "the second run differs from the first at step " + std::to_string(*differs));
+    throw Error(Code::diverged,
+                "run again, the state differs from the recorded one at step " + std::to_string(*differs));
   }
   result.ledger = sim.ledger();
   return result;

@@ -21,8 +21,8 @@ struct Rerun {
   std::vector<Capture> captures;
 };
 
-/// `steps`: after which to take the surface, ascending; the first entry may be 0-based step 0. Throws Error(diverged)
-/// when a state hash differs from the recording's.
+/// `steps`: after which to take the surface, from 0, ascending; one capture each, also when a step stands there twice.
+/// Throws Error(diverged) when a state hash differs from the recording's.
 Rerun rerun(const Recording& recording, const std::vector<std::size_t>& steps);
 
 /// The four phases of the paper's Fig 11: at rest, first touch, half way, deepest.

@@ -10,6 +10,9 @@
 namespace crumble::app {
 namespace {
 
+// 2.7 hours at 1 ms; a step takes 160 bytes of recording and samples.
+constexpr double kMaxSteps = 1e7;
+
 std::unique_ptr<Device> open_press_device(const Scene& scene, const PressOptions& press) {
   return open_press(press, scene.def.step.tau * scene.def.step.iterations);
 }
@@ -39,7 +42,8 @@ struct Motion {
   double seconds = 0;
 };
 
-// A press moves in the scene's own frame; a replay in the trajectory's, which the scene's workspace places.
+// A press moves in the scene's own frame. The scene's own trajectory is placed by the scene's workspace; any other
+// begins, with its origin, where the tool starts.
 Motion open_motion(const Scene& scene, const std::string& device) {
   const double tick = scene.def.step.tau * scene.def.step.iterations;
   const bool own_trajectory = device.empty() && scene.trajectory;
@@ -51,8 +55,8 @@ Motion open_motion(const Scene& scene, const std::string& device) {
   if (device.starts_with("press:")) {
     const auto speed = parse_double(std::string_view(device).substr(6));
     if (!speed) throw Error(Code::format, "--device '" + device + "': press:MM_PER_S takes a number");
+    require_positive("--device press:MM_PER_S", *speed);
     press.speed = *speed * 1e-3;
-    require_positive("--device press:MM_PER_S", press.speed);
   } else if (device.starts_with("replay:")) {
     const Trajectory trajectory = load_trajectory(device.substr(7));
     WorkspaceOptions workspace;
@@ -63,6 +67,15 @@ Motion open_motion(const Scene& scene, const std::string& device) {
     throw Error(Code::unsupported, "--device '" + device + "' is not known; there are press:MM_PER_S and replay:FILE");
   }
   return {open_press_device(scene, press), {}, duration(scene, device, press, nullptr)};
+}
+
+std::size_t count_steps(double seconds, double tick) {
+  const double steps = std::floor(seconds / tick + 1.5);
+  if (!(steps <= kMaxSteps)) {
+    throw Error(Code::too_large, to_text(seconds) + " s of motion are more than " + to_text(kMaxSteps) + " steps of " +
+                                     to_text(tick) + " s, the most that a run keeps");
+  }
+  return static_cast<std::size_t>(steps);
 }
 
 }  // namespace
@@ -94,10 +107,8 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
   experiment.device = motion.device->info().name;
 
   const double tick = experiment.scene.def.step.tau * experiment.scene.def.step.iterations;
-  const auto steps = static_cast<std::size_t>(std::floor(seconds.value_or(motion.seconds) / tick + 1.5));
-  experiment.samples.reserve(steps);
+  const std::size_t steps = count_steps(seconds.value_or(motion.seconds), tick);
   std::vector<double> cpu;
-  cpu.reserve(steps);
   DeviceSample sample;
   for (std::size_t step = 0; step < steps; ++step) {
     const ReadStatus status = motion.device->read(sample);

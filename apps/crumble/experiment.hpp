@@ -40,7 +40,8 @@ struct Experiment {
 };
 
 /// Moves the scene's tool by `device`, "press:MM_PER_S" or "replay:FILE" (empty: what the scene says), until the motion
-/// is over or `seconds` have been simulated. `progress` is told the share done.
+/// is over or `seconds` have been simulated. The origin of FILE's motion lies where the tool starts. `progress` is told
+/// the share done. Throws Error, also when the body diverges.
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
                           const std::function<void(double)>& progress);
 

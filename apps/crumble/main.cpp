@@ -3,10 +3,24 @@
 
 #include "commands.hpp"
 #include "crumble/base/error.hpp"
+#include "scenes/scene.hpp"
+
+namespace {
+
+std::string version_text() {
+  std::string text =
+      "crumble " CRUMBLE_VERSION ", built by " CRUMBLE_COMPILER "\nprecision: float64\nkernels: reference";
+  text += "\nthreads: 1\ndevices: press replay\nscenes:";
+  for (const std::string& name : crumble::scene_names()) text += " " + name;
+  return text;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Real-time destruction of soft, brittle bodies with force feedback");
   app.require_subcommand(1);
+  app.set_version_flag("--version", version_text);
   crumble::app::add_run(app);
   crumble::app::add_mesh(app);
   crumble::app::add_replay(app);
@@ -18,6 +32,13 @@ int main(int argc, char** argv) {
     return 1;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "crumble: out of memory\n");
+    return 1;
+  } catch (const std::exception& error) {  // of the standard library: a file system that answers strangely
+    std::fprintf(stderr, "crumble: %s\n", error.what());
+    return 1;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    std::fprintf(stderr, "crumble: cannot write the output\n");
     return 1;
   }
   return 0;

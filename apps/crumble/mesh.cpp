@@ -6,6 +6,7 @@
 #include "crumble/base/error.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "crumble/tetmesh/vtk_file.hpp"
+#include "output.hpp"
 #include "render/mesh_file.hpp"
 
 namespace crumble::app {
@@ -19,21 +20,34 @@ struct MeshOptions {
   bool json = false;
 };
 
-double size_at(const MeshOptions& options, std::size_t i, const char* usage) {
-  if (i >= options.sizes.size()) throw Error(Code::format, "mesh " + options.shape + " takes " + usage + ", metres");
-  return options.sizes[i];
+// The sizes, named as in the usage; as many as there are names.
+std::vector<double> sizes(const MeshOptions& options, const std::vector<std::string>& names) {
+  if (options.sizes.size() != names.size()) {
+    std::string usage;
+    for (const std::string& name : names) usage += " " + name;
+    throw Error(Code::format, "mesh " + options.shape + " takes" + (usage.empty() ? " no sizes" : usage + ", metres") +
+                                  ", not " + std::to_string(options.sizes.size()) + " of them");
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    require_positive("mesh " + options.shape + " " + names[i], options.sizes[i]);
+  }
+  return options.sizes;
 }
 
 std::unique_ptr<Shape> make_shape(const MeshOptions& options) {
   if (options.shape == "box") {
-    const char* usage = "X Y Z";
-    return make_box({size_at(options, 0, usage), size_at(options, 1, usage), size_at(options, 2, usage)});
+    const auto size = sizes(options, {"X", "Y", "Z"});
+    return make_box({size[0], size[1], size[2]});
   }
-  if (options.shape == "sphere") return make_sphere(size_at(options, 0, "RADIUS"));
-  if (options.shape == "cylinder")
-    return make_cylinder(size_at(options, 0, "RADIUS HEIGHT"), size_at(options, 1, "RADIUS HEIGHT"));
+  if (options.shape == "sphere") return make_sphere(sizes(options, {"RADIUS"})[0]);
+  if (options.shape == "cylinder") {
+    const auto size = sizes(options, {"RADIUS", "HEIGHT"});
+    return make_cylinder(size[0], size[1]);
+  }
   for (const PaperBody body : {PaperBody::cube, PaperBody::slab, PaperBody::globe, PaperBody::globe_literal}) {
-    if (options.shape == paper_body_facts(body).name) return make_paper_shape(body);
+    if (options.shape != paper_body_facts(body).name) continue;
+    sizes(options, {});
+    return make_paper_shape(body);
   }
   throw Error(Code::unsupported, "mesh '" + options.shape +
                                      "' is not known; there are: box sphere cylinder cube slab globe globe_literal");
@@ -45,6 +59,8 @@ BubbleMeshOptions bubble_options(const MeshOptions& options) {
     if (options.shape == paper_body_facts(body).name) bubble = paper_options(body);
   }
   if (options.spacing) bubble.spacing = *options.spacing;
+  if (!options.spacing && bubble.spacing == 0) throw Error(Code::format, "--spacing is missing, metres");
+  require_positive("--spacing", bubble.spacing);
   if (options.offset.size() == 3) bubble.offset = {options.offset[0], options.offset[1], options.offset[2]};
   if (options.lattice != "hcp" && options.lattice != "fcc") {
     throw Error(Code::unsupported, "--lattice '" + options.lattice + "' is not known; there are: hcp fcc");
@@ -56,15 +72,8 @@ BubbleMeshOptions bubble_options(const MeshOptions& options) {
 }
 
 void write_mesh(const TetMesh& mesh, const std::filesystem::path& path) {
-  if (path.extension() == ".vtk") {
-    write_vtk(mesh, path);
-  } else if (render::mesh_file_extensions().find(path.extension().string()) != std::string::npos &&
-             path.has_extension()) {
-    render::write_mesh_file({mesh.positions, mesh.boundary}, {}, path);
-  } else {
-    throw Error(Code::unsupported, "--out '" + path.string() + "': the mesh is written as .vtk, its surface as " +
-                                       render::mesh_file_extensions());
-  }
+  if (path.extension() == ".vtk") return write_vtk(mesh, path);
+  render::write_mesh_file({mesh.positions, mesh.boundary}, {}, path);
 }
 
 nlohmann::ordered_json to_json(const BubbleMesh& body, double seconds) {
@@ -92,11 +101,13 @@ nlohmann::ordered_json to_json(const BubbleMesh& body, double seconds) {
 }
 
 void mesh(const MeshOptions& options) {
+  const std::filesystem::path out = options.out;
+  if (!out.empty() && out.extension() != ".vtk") require_surface_extension(out, ".vtk ");
   const std::unique_ptr<Shape> shape = make_shape(options);
   const double before = thread_cpu_seconds();
   const BubbleMesh body = generate(*shape, bubble_options(options));
   const double seconds = thread_cpu_seconds() - before;
-  if (!options.out.empty()) write_mesh(body.mesh, options.out);
+  if (!out.empty()) write_mesh(body.mesh, out);
   const nlohmann::ordered_json json = to_json(body, seconds);
   if (options.json) {
     std::puts(json.dump(1).c_str());

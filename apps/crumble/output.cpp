@@ -52,7 +52,7 @@ void write_phases(const Experiment& experiment, const std::vector<Capture>& capt
   std::array<render::Image, 4> images;
   std::array<std::string, 4> captions;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Capture& capture = captures[std::min(i, captures.size() - 1)];
+    const Capture& capture = captures[i];
     scene.meshes = {capture.body, tool_mesh(experiment.scene.def.tools[0].shape, capture.tool)};
     images[i] = renderer.draw(scene, kWidth, kHeight);
     const Sample& sample = experiment.samples[capture.step];
@@ -70,18 +70,23 @@ void write_surface(const Capture& capture, const std::filesystem::path& path) {
   render::write_mesh_file({capture.body.positions, capture.body.triangles}, {}, path);
 }
 
-void write_outputs(const Experiment& experiment, const Rerun& again, const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) throw Error(Code::io, "cannot make folder '" + folder.string() + "': " + failed.message());
-  write_text(folder / "force.csv", force_table(experiment));
-  experiment.recording.save(folder / "experiment.crec");
-  for (std::size_t i = 0; i < again.captures.size(); ++i) {
-    const std::string name = "surface_" + std::to_string(i) + ".ply";
-    write_surface(again.captures[i], folder / name);
+void require_surface_extension(const std::filesystem::path& path, const std::string& others) {
+  const std::string known = render::mesh_file_extensions();
+  if (!path.has_extension() || (known + " ").find(path.extension().string() + " ") == std::string::npos) {
+    throw Error(Code::unsupported, "--out '" + path.string() + "' must end in one of " + others + known);
   }
-  write_plot(experiment, folder / "force.svg");
-  write_phases(experiment, again.captures, folder / "phases.png");
+}
+
+void write_outputs(const Experiment& experiment, const Rerun& again, OutputFolder& folder) {
+  const std::filesystem::path& place = folder.temporary();
+  write_text(place / "force.csv", force_table(experiment));
+  experiment.recording.save(place / "experiment.crec");
+  for (std::size_t i = 0; i < again.captures.size(); ++i) {
+    write_surface(again.captures[i], place / ("surface_" + std::to_string(i) + ".ply"));
+  }
+  write_plot(experiment, place / "force.svg");
+  write_phases(experiment, again.captures, place / "phases.png");
+  folder.commit();
 }
 
 }  // namespace crumble::app

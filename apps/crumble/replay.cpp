@@ -37,11 +37,13 @@ struct ExportOptions {
 };
 
 void export_surface(const ExportOptions& options) {
+  require_surface_extension(options.out);
   const Recording recording = Recording::load(options.recording);
   const StepSettings settings = recording.start().definition().step;
   const double tick = settings.tau * settings.iterations;
   const double last = static_cast<double>(recording.step_count()) * tick;
   require_in_range("--at", options.at, 0, last);
+  if (recording.step_count() == 0) throw Error(Code::empty, "recording '" + options.recording + "' has no step");
   const auto step = static_cast<std::size_t>(std::max(std::floor(options.at / tick + 0.5), 1.0)) - 1;
   const Rerun again = rerun(recording, {std::min(step, recording.step_count() - 1)});
   write_surface(again.captures.at(0), options.out);

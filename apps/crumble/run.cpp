@@ -33,13 +33,19 @@ void run(const RunOptions& options) {
   if (options.preset != "default" && options.preset != "paper") {
     throw Error(Code::unsupported, "--preset '" + options.preset + "' is not known; there are: default paper");
   }
+  if (options.tau) {
+    require_positive("--dt", *options.tau);
+    require_in_range("--dt", *options.tau, 0, kMaxTimeStep);
+  }
+  std::optional<OutputFolder> folder;
+  if (!options.out.empty()) folder.emplace(options.out);
   Scene scene = load_scene(options.scene, options.preset == "paper" ? Preset::paper : Preset::standard);
   if (options.tau) scene.def.step.tau = *options.tau;
   const Experiment experiment = run_experiment(std::move(scene), options.device, options.seconds, show_progress);
   const Rerun again =
-      rerun(experiment.recording, options.out.empty() ? std::vector<std::size_t>{} : phase_steps(experiment.samples));
+      rerun(experiment.recording, folder ? phase_steps(experiment.samples) : std::vector<std::size_t>{});
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
-  if (!options.out.empty()) write_outputs(experiment, again, options.out);
+  if (folder) write_outputs(experiment, again, *folder);
   const std::string text = options.json ? to_json(experiment, again) : to_report(experiment, again, options.out);
   std::fputs(text.c_str(), stdout);
 }
