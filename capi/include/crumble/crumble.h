@@ -1,0 +1,446 @@
+/* crumble: real-time fracture of soft, brittle bodies with force feedback. This file is the whole C API and its manual;
+ * docs/capi.md has a first program.
+ *
+ * Units. SI everywhere: metres, kilograms, seconds, newtons. Right-handed axes, +Y up. Quaternions are w, x, y, z.
+ *
+ * Results. Every function that can fail returns a crumble_result: CRUMBLE_OK or a negative CRUMBLE_E_ code. Nothing
+ * aborts, prints or throws. crumble_last_error() tells the calling thread which function, field and value it was.
+ * A call that fails changes no object and writes no output, with two exceptions that are said where they apply: a step
+ * that fails writes zero force, and a buffer that is too small gets its needed size told.
+ *
+ * Handles. An object is named by a value that looks like a pointer and is none: it is looked up in a table, never
+ * followed. Every function that takes a handle answers CRUMBLE_E_NULL for NULL, CRUMBLE_E_STALE_HANDLE for an object
+ * that has been destroyed, CRUMBLE_E_BAD_HANDLE for anything else that is no handle of its kind, and CRUMBLE_E_BUSY
+ * (see below). The comments of the functions list only what comes on top of these.
+ *
+ * Definitions. A struct whose first field is struct_size grows at its end from version to version. Fill it with its
+ * _init function and sizeof, then set what you need. The library takes a shorter struct from an older program, with
+ * defaults for the rest, and a longer one from a newer program as long as what it does not know is zero
+ * (CRUMBLE_E_VERSION else). A size of 0 is CRUMBLE_E_UNINITIALIZED. Structs that the library fills carry struct_size
+ * too: set it before the call.
+ *
+ * Threads. [any]: callable from every thread at any time. [one]: one thread at a time in one object, different objects
+ * in parallel; a second thread in the same object is answered CRUMBLE_E_BUSY at once and never waits.
+ */
+#ifndef CRUMBLE_CRUMBLE_H
+#define CRUMBLE_CRUMBLE_H
+
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define CRUMBLE_API __attribute__((visibility("default")))
+#else
+#define CRUMBLE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Version ---------------------------------------------------------------------------------------------------- */
+
+#define CRUMBLE_VERSION_MAJOR 0
+#define CRUMBLE_VERSION_MINOR 1
+#define CRUMBLE_VERSION_PATCH 0
+/* of this header: major * 1000000 + minor * 1000 + patch */
+#define CRUMBLE_VERSION_NUMBER (CRUMBLE_VERSION_MAJOR * 1000000 + CRUMBLE_VERSION_MINOR * 1000 + CRUMBLE_VERSION_PATCH)
+
+typedef int32_t crumble_result;
+
+/* CRUMBLE_VERSION_NUMBER of the library. [any] */
+CRUMBLE_API uint32_t crumble_version(void);
+/* The same as "major.minor.patch"; static text. [any] */
+CRUMBLE_API const char *crumble_version_string(void);
+/* One line for bug reports: version, source revision, compiler, arithmetic. Static text. [any] */
+CRUMBLE_API const char *crumble_build_info(void);
+/* Whether a program compiled with the header of version `header_version` (pass CRUMBLE_VERSION_NUMBER) can use this
+ * library: same major version, and same minor version while the major one is 0. Else CRUMBLE_E_VERSION. [any] */
+CRUMBLE_API crumble_result crumble_check_version(uint32_t header_version);
+
+/* ---- Results ---------------------------------------------------------------------------------------------------- */
+
+enum {
+  CRUMBLE_OK = 0,
+  CRUMBLE_E_NULL = -1,              /* a required pointer or handle is NULL */
+  CRUMBLE_E_INVALID_VALUE = -2,     /* a number is NaN or infinite, or values contradict each other */
+  CRUMBLE_E_OUT_OF_RANGE = -3,      /* a number is finite but not allowed */
+  CRUMBLE_E_UNINITIALIZED = -4,     /* struct_size is 0 */
+  CRUMBLE_E_VERSION = -5,           /* a struct, file or snapshot that this library does not know */
+  CRUMBLE_E_BAD_HANDLE = -6,        /* no handle of this kind */
+  CRUMBLE_E_STALE_HANDLE = -7,      /* its object has been destroyed */
+  CRUMBLE_E_BUSY = -8,              /* another thread is in this object */
+  CRUMBLE_E_IN_USE = -9,            /* another object needs this one */
+  CRUMBLE_E_BUFFER_TOO_SMALL = -10, /* the needed size has been written */
+  CRUMBLE_E_NO_MEMORY = -11,
+  CRUMBLE_E_TOO_LARGE = -12, /* more than the library takes; found before memory is taken */
+  CRUMBLE_E_TOO_COARSE = -13,
+  CRUMBLE_E_EMPTY = -14,
+  CRUMBLE_E_MESH = -15, /* an index out of range, a flat or inverted element, ... */
+  CRUMBLE_E_MESH_OPEN = -16,
+  CRUMBLE_E_MESH_ORIENTATION = -17,
+  CRUMBLE_E_MESH_NONCONVEX = -18,
+  CRUMBLE_E_DUPLICATE_NODE = -19,
+  CRUMBLE_E_ISOLATED_NODE = -20,
+  CRUMBLE_E_DT_TOO_LARGE = -21, /* time step */
+  CRUMBLE_E_BAD_POSE = -22,     /* not finite, or not a rotation */
+  CRUMBLE_E_IO = -23,
+  CRUMBLE_E_FORMAT = -24,  /* a file that is not of the expected kind */
+  CRUMBLE_E_CORRUPT = -25, /* truncated or damaged */
+  CRUMBLE_E_DEVICE_LOST = -26,
+  CRUMBLE_E_DIVERGED = -27, /* the body left the world and stands still until crumble_sim_reset */
+  CRUMBLE_E_STATE = -28,    /* the call does not fit what the object is doing */
+  CRUMBLE_E_UNSUPPORTED = -29,
+  CRUMBLE_E_INTERNAL = -30 /* a defect of the library; please report it with crumble_last_error() */
+};
+
+/* What went wrong in the calling thread's last call that failed, as "function: field and value"; "" before the first
+ * one. Valid until that thread's next failing call. [any] */
+CRUMBLE_API const char *crumble_last_error(void);
+/* "CRUMBLE_E_NULL" and so on; "unknown" for a number that is no result. Static text. [any] */
+CRUMBLE_API const char *crumble_result_name(crumble_result result);
+
+/* ---- Arrays ----------------------------------------------------------------------------------------------------- */
+
+enum { CRUMBLE_SCALAR_FLOAT64 = 1, CRUMBLE_SCALAR_FLOAT32 = 2, CRUMBLE_SCALAR_UINT32 = 3, CRUMBLE_SCALAR_UINT8 = 4 };
+
+/* A look into an object's own memory: `count` rows of `components` scalars, one row every `stride` bytes. Read only.
+ * This struct never changes its size. */
+typedef struct crumble_view {
+  const void *data;
+  uint64_t count;
+  uint32_t stride;
+  uint32_t components;
+  uint32_t scalar_type; /* CRUMBLE_SCALAR_ */
+  uint32_t reserved;    /* 0 */
+} crumble_view;
+
+/* What crumble_mesh_get_view, crumble_mesh_copy, crumble_sim_get_view and crumble_sim_copy can be asked for.
+ * Row i of an array per node belongs to node i, and so on: every index in this API counts rows from 0. */
+enum {
+  /* Of a mesh. */
+  CRUMBLE_ARRAY_REST_POSITIONS = 1, /* (nodes, 3) float64, m */
+  CRUMBLE_ARRAY_NODE_KINDS = 2,     /* (nodes) uint8: 0 corner, 1 crease, 2 surface, 3 inside */
+  CRUMBLE_ARRAY_NODE_VOLUMES = 3,   /* (nodes) float64, m^3: a quarter of every tetrahedron around the node */
+  CRUMBLE_ARRAY_TETRAHEDRA = 4,     /* (tetrahedra, 4) uint32 nodes; positive volume in this order */
+  CRUMBLE_ARRAY_SPRINGS = 5,        /* (springs, 2) uint32 nodes, first < second, ascending */
+  CRUMBLE_ARRAY_BOUNDARY = 6,       /* (triangles, 3) uint32 nodes, counter-clockwise from outside */
+  /* Of a simulation, as the last step left it. The solver keeps one array per axis; POSITIONS and VELOCITIES put the
+   * three together and exist as copies only. */
+  CRUMBLE_ARRAY_POSITIONS = 16,   /* (nodes, 3) float64, m; copy only */
+  CRUMBLE_ARRAY_POSITIONS_X = 17, /* (nodes) float64, m */
+  CRUMBLE_ARRAY_POSITIONS_Y = 18,
+  CRUMBLE_ARRAY_POSITIONS_Z = 19,
+  CRUMBLE_ARRAY_VELOCITIES = 20,   /* (nodes, 3) float64, m/s; copy only */
+  CRUMBLE_ARRAY_VELOCITIES_X = 21, /* (nodes) float64, m/s */
+  CRUMBLE_ARRAY_VELOCITIES_Y = 22,
+  CRUMBLE_ARRAY_VELOCITIES_Z = 23,
+  CRUMBLE_ARRAY_INTACT = 24,         /* (springs) uint8: 1 intact, 0 cut */
+  CRUMBLE_ARRAY_NEW_CUTS = 25,       /* uint32 springs that the last step cut, ascending */
+  CRUMBLE_ARRAY_NODE_FRAGMENTS = 26, /* (nodes) uint32: fragment of each node, 0 to crumble_sim_count_fragments - 1 */
+  /* Of a simulation, as the last crumble_sim_extract_surface left it; CRUMBLE_E_STATE before the first one. */
+  CRUMBLE_ARRAY_SURFACE_POSITIONS = 32,      /* (vertices, 3) float64, m */
+  CRUMBLE_ARRAY_SURFACE_REST_POSITIONS = 33, /* (vertices, 3) float64, m: the same points in the body at rest */
+  CRUMBLE_ARRAY_SURFACE_TRIANGLES = 34,      /* (triangles, 3) uint32 vertices, counter-clockwise; skin first */
+  CRUMBLE_ARRAY_SURFACE_NORMALS = 35,        /* (triangles, 9) float32: a unit normal for each of the 3 corners */
+  CRUMBLE_ARRAY_SURFACE_FRAGMENTS = 36,      /* (triangles) uint32 fragment */
+  CRUMBLE_ARRAY_SURFACE_TETRAHEDRA = 37      /* (triangles) uint32 tetrahedron that the triangle was cut from */
+};
+
+/* ---- Meshes ----------------------------------------------------------------------------------------------------- */
+
+/* The tetrahedral mesh of a body at rest. Never changes. Bodies rest on y = 0, centred in x and z. */
+typedef struct crumble_mesh_t *crumble_mesh;
+
+enum { CRUMBLE_SHAPE_BOX = 0, CRUMBLE_SHAPE_SPHERE = 1, CRUMBLE_SHAPE_CYLINDER = 2 };
+
+/* A body to be meshed by close-packed bubbles. */
+typedef struct crumble_mesh_def {
+  uint32_t struct_size;
+  uint32_t shape;         /* CRUMBLE_SHAPE_; default: box */
+  uint32_t surface_nodes; /* exact number of nodes on the surface and ... */
+  uint32_t inside_nodes;  /* ... inside: both, or 0 and 0 (default) for what comes out by itself */
+  double size[3];         /* box: edge lengths, m; default 0.03 each */
+  double radius;          /* sphere and cylinder, m; default 0.02 */
+  double height;          /* cylinder (upright), m; default 0.03 */
+  double spacing;         /* distance wanted between neighbouring nodes, m; default 0.0044 */
+} crumble_mesh_def;
+
+/* The bodies of the paper, with its numbers of nodes on the surface + inside. */
+enum {
+  CRUMBLE_PAPER_CUBE = 0,         /* 30 mm cube, 306 + 294 */
+  CRUMBLE_PAPER_SLAB = 1,         /* 30 x 10 x 30 mm, 382 + 314 */
+  CRUMBLE_PAPER_GLOBE = 2,        /* radius 20 mm, 305 + 370 (the paper's two numbers read as swapped) */
+  CRUMBLE_PAPER_GLOBE_LITERAL = 3 /* the same with 370 + 305, as printed */
+};
+
+typedef struct crumble_mesh_info {
+  uint32_t struct_size;
+  uint32_t node_count;
+  uint32_t surface_node_count;
+  uint32_t spring_count;
+  uint32_t tetrahedron_count;
+  uint32_t boundary_triangle_count;
+  double volume; /* m^3 */
+} crumble_mesh_info;
+
+/* Defaults. `struct_size`: sizeof(crumble_mesh_def).
+ * CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+CRUMBLE_API crumble_result crumble_mesh_def_init(crumble_mesh_def *def, uint32_t struct_size);
+/* Meshes a shape; the same bits on every machine. Takes tenths of a second for the paper's bodies.
+ * CRUMBLE_E_INVALID_VALUE and _OUT_OF_RANGE (a field; counts too far from what comes out by itself), _TOO_COARSE (the
+ * text names the largest usable spacing), _TOO_LARGE (above 5 million nodes), _MESH (no valid mesh came out),
+ * _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_mesh_create(const crumble_mesh_def *def, crumble_mesh *mesh);
+/* One of the paper's bodies, CRUMBLE_PAPER_. CRUMBLE_E_OUT_OF_RANGE, _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_mesh_create_paper(uint32_t body, crumble_mesh *mesh);
+/* A mesh of your own. `positions`: (node_count, 3), m. `tetrahedra`: (tetrahedron_count, 4) nodes, each with positive
+ * volume: seen from its fourth corner the first three go counter-clockwise. Both are copied.
+ * CRUMBLE_E_EMPTY, _TOO_LARGE (a count above 2^31 - 1), _INVALID_VALUE (a position), _MESH (index, flat or inverted
+ * tetrahedron, face of more than two), _DUPLICATE_NODE, _ISOLATED_NODE, _NO_MEMORY; the text names the first bad
+ * index. [any] */
+CRUMBLE_API crumble_result crumble_mesh_create_from_tets(const double *positions, uint32_t node_count,
+                                                         const uint32_t *tetrahedra, uint32_t tetrahedron_count,
+                                                         crumble_mesh *mesh);
+/* NULL is allowed and does nothing. Simulations made from the mesh keep what they need. [one] */
+CRUMBLE_API crumble_result crumble_mesh_destroy(crumble_mesh mesh);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_mesh_get_info(crumble_mesh mesh, crumble_mesh_info *info);
+/* Array `which` of the mesh group of CRUMBLE_ARRAY_, without a copy; valid until the mesh is destroyed.
+ * CRUMBLE_E_OUT_OF_RANGE (no such array of a mesh). [one] */
+CRUMBLE_API crumble_result crumble_mesh_get_view(crumble_mesh mesh, uint32_t which, crumble_view *view);
+/* The same array, rows packed, into `dst` of `dst_bytes`. `needed` receives the bytes it takes and may be NULL; with
+ * `dst` NULL the call only asks for it. CRUMBLE_E_OUT_OF_RANGE, _BUFFER_TOO_SMALL (`needed` is written, `dst` is
+ * not). [one] */
+CRUMBLE_API crumble_result crumble_mesh_copy(crumble_mesh mesh, uint32_t which, void *dst, uint64_t dst_bytes,
+                                             uint64_t *needed);
+
+/* ---- Simulations ------------------------------------------------------------------------------------------------ */
+
+/* One body, the tools and walls that touch it, and the step that a servo loop calls. */
+typedef struct crumble_sim_t *crumble_sim;
+
+enum { CRUMBLE_MASS_LUMPED = 0, CRUMBLE_MASS_EQUAL = 1 };
+enum {
+  CRUMBLE_POLICY_GUARD = 0,    /* raise the drag of nodes for which tau is too long: stable everywhere */
+  CRUMBLE_POLICY_SUBSTEP = 1,  /* divide the step: the exact model, up to 64 substeps */
+  CRUMBLE_POLICY_ERROR = 2,    /* refuse such a tau */
+  CRUMBLE_POLICY_UNCHECKED = 3 /* the paper's way: nothing */
+};
+enum { CRUMBLE_CONTACT_NEAREST_SURFACE = 0, CRUMBLE_CONTACT_ALONG_MOTION = 1 };
+
+/* What a simulation is, apart from its mesh, tools, walls and fixed nodes. The defaults are a tofu of the paper's best
+ * parameters on a smooth floor, with the library's best behaviour. */
+typedef struct crumble_sim_def {
+  uint32_t struct_size;
+  uint32_t floor;            /* 1 (default): a floor without friction at y = 0; 0: none */
+  double gravity[3];         /* m/s^2; default 0, -9.81, 0 */
+  double stiffness;          /* k of every spring, N/m; > 0; default 30 */
+  double damping_ratio;      /* alpha of the paper's Eq (2); >= 0; default 30 */
+  double length_limit;       /* l_p of Eq (8): springs longer than this times their rest length are cut; > 1; 1.3 */
+  double mass;               /* of the body, kg; > 0; default 0.03 */
+  uint32_t mass_rule;        /* CRUMBLE_MASS_: by the volume around each node (default), or the same for all */
+  uint32_t time_step_policy; /* CRUMBLE_POLICY_; default guard */
+  double tau;                /* time that a step advances, s; (0, 0.01]; default 0.001 */
+  uint32_t iterations;       /* of Eqs (3) and (4) per step, each advancing tau; above 1 only unchecked; default 1 */
+  uint32_t contact_rule;     /* CRUMBLE_CONTACT_: how nodes leave a tool; default nearest surface */
+  double cut_fade;           /* time in which the force of a cut spring goes to 0, s; [0, 1]; default 0.004 */
+  uint32_t mean_force;       /* 1: report the mean of the last five forces, Eq (7); default 0 */
+  uint32_t reserved;         /* keep 0 */
+} crumble_sim_def;
+
+enum { CRUMBLE_TOOL_STICK = 0, CRUMBLE_TOOL_BAR = 1, CRUMBLE_TOOL_MESH = 2 };
+
+/* What a hand moves: a convex body in a frame of its own, which the pose puts into the scene. */
+typedef struct crumble_tool_def {
+  uint32_t struct_size;
+  uint32_t shape;            /* CRUMBLE_TOOL_; default: the paper's round stick of 8 mm diameter and 5 cm length */
+  double radius;             /* stick: prism on a regular polygon in a circle of this radius, axis +Z, m; 0.004 */
+  double length;             /* stick, m; default 0.05 */
+  double size[3];            /* bar: edge lengths about the origin, m; default 0.006, 0.006, 0.05 */
+  uint32_t sides;            /* stick: 3 to 4096; default 16; one looks down (-Y) when even */
+  uint32_t vertex_count;     /* mesh: rows of `vertices` */
+  uint32_t triangle_count;   /* mesh: rows of `triangles` */
+  uint32_t reserved;         /* keep 0 */
+  double static_friction;    /* Coulomb coefficients, 0 <= dynamic <= static; default 0; the paper has 3.0 ... */
+  double dynamic_friction;   /* ... and 1.5 */
+  const double *vertices;    /* mesh: (vertex_count, 3), m; copied */
+  const uint32_t *triangles; /* mesh: (triangle_count, 3) vertices, closed, counter-clockwise from outside; copied */
+} crumble_tool_def;
+
+/* A half-space that the body stays out of: normal . x >= offset on the body's side. */
+typedef struct crumble_wall_def {
+  uint32_t struct_size;
+  uint32_t reserved;       /* keep 0 */
+  double normal[3];        /* unit; default 0, 1, 0 */
+  double offset;           /* m; default 0 */
+  double static_friction;  /* as for tools; default 0 */
+  double dynamic_friction; /* default 0 */
+} crumble_wall_def;
+
+/* Where a tool is. This struct never changes its size. */
+typedef struct crumble_pose {
+  double position[3];    /* of the tool's origin, m */
+  double orientation[4]; /* unit quaternion w, x, y, z; made unit again if its length is within 0.001 of 1 */
+} crumble_pose;
+
+/* What the body does to a tool, in scene axes. This struct never changes its size. */
+typedef struct crumble_wrench {
+  double force[3];  /* N */
+  double torque[3]; /* N m, about the tool's origin */
+} crumble_wrench;
+
+/* What a step had to do; the force is valid all the same. */
+enum {
+  CRUMBLE_STEP_TOOL_JUMPED = 1,       /* a tool moved farther than a step can follow */
+  CRUMBLE_STEP_CONTACT_SUSPENDED = 2, /* a tool that jumped, or began inside the body, has not been outside since */
+  CRUMBLE_STEP_GUARDED = 4            /* CRUMBLE_POLICY_GUARD raised the drag of some nodes */
+};
+
+/* The last step. */
+typedef struct crumble_step_info {
+  uint32_t struct_size;
+  int32_t status;    /* what crumble_sim_step returned: CRUMBLE_OK, _BAD_POSE or _DIVERGED */
+  uint64_t step;     /* steps done since the start */
+  double time;       /* simulated seconds */
+  uint32_t flags;    /* CRUMBLE_STEP_ bits */
+  uint32_t contacts; /* nodes that tools hold */
+  uint32_t new_cuts; /* springs cut in this step */
+  uint32_t bad_node; /* with _DIVERGED: the first node that left the world */
+} crumble_step_info;
+
+/* Sums since the start. */
+typedef struct crumble_counters {
+  uint32_t struct_size;
+  uint32_t reserved;        /* 0 */
+  uint64_t guarded_nodes;   /* nodes whose drag the guard raised: a property of body and tau */
+  uint64_t cuts;            /* springs */
+  uint64_t tool_jumps;      /* steps with CRUMBLE_STEP_TOOL_JUMPED, per tool */
+  uint64_t suspended_steps; /* steps with CRUMBLE_STEP_CONTACT_SUSPENDED */
+  uint64_t bad_poses;       /* steps refused with CRUMBLE_E_BAD_POSE */
+} crumble_counters;
+
+/* Wall time of each stage of the last step, s. */
+typedef struct crumble_profile {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+  double move_tool;
+  double find_contacts;
+  double project_contacts;
+  double solve_network;
+  double cut_springs;
+  double sum_reaction;
+  double finish_step;
+} crumble_profile;
+
+typedef struct crumble_surface_info {
+  uint32_t struct_size;
+  uint32_t vertex_count;
+  uint32_t triangle_count;
+  uint32_t skin_triangle_count; /* the first triangles: the body's outside; the others were laid open by cracks */
+  uint32_t fragment_count;
+  uint32_t reserved; /* 0 */
+} crumble_surface_info;
+
+/* Defaults. `struct_size`: sizeof of the struct.
+ * CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+CRUMBLE_API crumble_result crumble_sim_def_init(crumble_sim_def *def, uint32_t struct_size);
+CRUMBLE_API crumble_result crumble_tool_def_init(crumble_tool_def *def, uint32_t struct_size);
+CRUMBLE_API crumble_result crumble_wall_def_init(crumble_wall_def *def, uint32_t struct_size);
+
+/* A simulation of a body at rest, without tools and fixed nodes. `def` may be NULL: defaults. The mesh may be destroyed
+ * afterwards.
+ * CRUMBLE_E_INVALID_VALUE and _OUT_OF_RANGE (the text names the field), _UNINITIALIZED, _VERSION, _DT_TOO_LARGE (tau),
+ * _NO_MEMORY. [one] in the mesh */
+CRUMBLE_API crumble_result crumble_sim_create(crumble_mesh mesh, const crumble_sim_def *def, crumble_sim *sim);
+/* NULL is allowed and does nothing. [one] */
+CRUMBLE_API crumble_result crumble_sim_destroy(crumble_sim sim);
+
+/* Set-up. The functions of this group rebuild the simulation. They are for the time before its first step, or after
+ * crumble_sim_reset, and outside a recording: CRUMBLE_E_STATE else. All: CRUMBLE_E_NO_MEMORY. [one] */
+
+/* What the simulation was made with, changed by what was called since. CRUMBLE_E_UNINITIALIZED, _VERSION. At any
+ * time. [one] */
+CRUMBLE_API crumble_result crumble_sim_get_def(crumble_sim sim, crumble_sim_def *def);
+/* Another definition: material, gravity, floor, step. Errors as crumble_sim_create. [one] */
+CRUMBLE_API crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def *def);
+/* Tools count from 0 in the order they are added; `index` receives the number and may be NULL. The first pose of the
+ * first step places a tool.
+ * CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE, _UNINITIALIZED, _VERSION, _NULL (arrays of a mesh); for a mesh also _MESH
+ * (fewer than 4 triangles, index, position not finite, triangle without area; the text names the first bad one),
+ * _MESH_OPEN, _MESH_ORIENTATION, _MESH_NONCONVEX, _TOO_LARGE. [one] */
+CRUMBLE_API crumble_result crumble_sim_add_tool(crumble_sim sim, const crumble_tool_def *def, uint32_t *index);
+/* CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (not a unit normal; friction), _UNINITIALIZED, _VERSION. [one] */
+CRUMBLE_API crumble_result crumble_sim_add_wall(crumble_sim sim, const crumble_wall_def *def);
+/* The nodes that never move: `nodes` (count) replaces those named before. `nodes` may be NULL with count 0.
+ * CRUMBLE_E_OUT_OF_RANGE (no such node). [one] */
+CRUMBLE_API crumble_result crumble_sim_fix_nodes(crumble_sim sim, const uint32_t *nodes, uint32_t count);
+/* The same with all nodes whose rest position has y <= height (m): what stands on the table.
+ * CRUMBLE_E_INVALID_VALUE. [one] */
+CRUMBLE_API crumble_result crumble_sim_fix_below(crumble_sim sim, double height);
+/* The choices of the paper where it makes one: along-motion contact, equal masses, tau = 2.9 ms unchecked, one
+ * iteration, no fading of cuts, the mean force of Eq (7), friction 3.0 / 1.5 on every tool and wall there is, no
+ * gravity. Material and fixed nodes stay. [one] */
+CRUMBLE_API crumble_result crumble_sim_apply_paper_preset(crumble_sim sim);
+
+/* One tick of the servo loop for a simulation with exactly one tool: the tool goes to `pose`, the body answers, time
+ * advances by tau, `wrench` receives what the body does to the tool. Never allocates (except while recording), locks,
+ * waits or calls the system.
+ * On every error *wrench is zero, so that a loop that ignores results pushes nobody. CRUMBLE_E_BAD_POSE (the body and
+ * its time stand still in this call; counted in crumble_counters), _DIVERGED (the body left the world: it is frozen at
+ * its last good state, and every further step says so until crumble_sim_reset), _OUT_OF_RANGE (another number of
+ * tools), _NO_MEMORY (while recording: the step is done, the recording is dropped). [one] */
+CRUMBLE_API crumble_result crumble_sim_step(crumble_sim sim, const crumble_pose *pose, crumble_wrench *wrench);
+/* The same with `tool_count` poses and wrenches, one of each per tool. Without tools both may be NULL with count 0.
+ * [one] */
+CRUMBLE_API crumble_result crumble_sim_step_tools(crumble_sim sim, const crumble_pose *poses, crumble_wrench *wrenches,
+                                                  uint32_t tool_count);
+/* About the last step. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_step_info(crumble_sim sim, crumble_step_info *info);
+CRUMBLE_API crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters *counters);
+CRUMBLE_API crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile *profile);
+
+/* Back to rest, unbroken, at time 0, with tools unplaced and counters at 0; also after CRUMBLE_E_DIVERGED.
+ * CRUMBLE_E_STATE (recording). [one] */
+CRUMBLE_API crumble_result crumble_sim_reset(crumble_sim sim);
+
+/* Array `which` of the simulation groups of CRUMBLE_ARRAY_, without a copy. Ask again after every call that changes the
+ * simulation: until then the view is valid. CRUMBLE_E_OUT_OF_RANGE (no such array), _UNSUPPORTED (exists as a copy
+ * only), _STATE (no surface yet). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_view(crumble_sim sim, uint32_t which, crumble_view *view);
+/* The same array, rows packed, into `dst` of `dst_bytes`. `needed` receives the bytes it takes and may be NULL; with
+ * `dst` NULL the call only asks for it. CRUMBLE_E_OUT_OF_RANGE, _STATE, _BUFFER_TOO_SMALL (`needed` is written, `dst`
+ * is not). [one] */
+CRUMBLE_API crumble_result crumble_sim_copy(crumble_sim sim, uint32_t which, void *dst, uint64_t dst_bytes,
+                                            uint64_t *needed);
+/* Fragments: parts of the body that intact springs hold together; 1 for an unbroken body. [one] */
+CRUMBLE_API crumble_result crumble_sim_count_fragments(crumble_sim sim, uint32_t *count);
+/* Brings the surface arrays up to where the body is now; for drawing, outside the servo tick. Closed, oriented and
+ * 2-manifold in every state of cutting. `info` may be NULL. The first call takes memory, the others do not.
+ * CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size), _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info *info);
+
+/* All that the future depends on, as bytes: a simulation of the same definition that restores them goes on with the
+ * same bits. The size changes from step to step. `dst`, `dst_bytes`, `needed` as in crumble_sim_copy.
+ * CRUMBLE_E_BUFFER_TOO_SMALL, _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_sim_snapshot(crumble_sim sim, void *dst, uint64_t dst_bytes, uint64_t *needed);
+/* CRUMBLE_E_CORRUPT, _VERSION (of another definition), _STATE (recording), _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_sim_restore(crumble_sim sim, const void *snapshot, uint64_t bytes);
+/* Hash of the state: equal bits, equal hash, on every machine. [one] */
+CRUMBLE_API crumble_result crumble_sim_state_hash(crumble_sim sim, uint64_t *hash);
+
+/* From here on every step's poses and state hash are kept. CRUMBLE_E_STATE (already recording), _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_sim_begin_recording(crumble_sim sim);
+/* Writes what has been recorded so far; recording goes on. `path` is UTF-8; the file is replaced only when all of it is
+ * written. CRUMBLE_E_STATE (not recording), _IO, _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_sim_save_recording(crumble_sim sim, const char *path);
+/* Ends and forgets the recording. CRUMBLE_E_STATE (not recording). [one] */
+CRUMBLE_API crumble_result crumble_sim_end_recording(crumble_sim sim);
+/* Runs a recording again. `step_count` receives its steps and `equal_steps` how many of them, from the first on, reached
+ * the recorded state: the same number when all is well. CRUMBLE_E_IO, _FORMAT, _VERSION, _CORRUPT, _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_verify_recording(const char *path, uint64_t *step_count, uint64_t *equal_steps);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

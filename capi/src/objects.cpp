@@ -1,0 +1,32 @@
+#include "objects.hpp"
+
+namespace crumble::capi {
+
+// The handles' kinds. Constant-initialised and never destroyed, so that handles work before and after main.
+constinit HandleTable Mesh::table{1};
+constinit HandleTable Sim::table{2};
+
+Sim::Sim(std::shared_ptr<const TetMesh> body, SimulationDef def)
+    : mesh(std::move(body)), simulation(std::move(def)), labeler(mesh->node_count(), mesh->springs) {}
+
+const FragmentLabeler& Sim::fragments() noexcept {
+  if (labels_stale) labeler.label(simulation.intact());
+  labels_stale = false;
+  return labeler;
+}
+
+crumble_result fail_handle(const Call& call, const char* name, const void* handle, crumble_result result) noexcept {
+  const TextPart value{std::uint64_t{reinterpret_cast<std::uintptr_t>(handle)}};
+  switch (result) {
+    case CRUMBLE_E_NULL:
+      return call.fail(result, {name, " must not be NULL"});
+    case CRUMBLE_E_STALE_HANDLE:
+      return call.fail(result, {name, " has been destroyed"});
+    case CRUMBLE_E_BUSY:
+      return call.fail(result, {name, " is in use by another thread"});
+    default:
+      return call.fail(result, {name, " is no handle of this kind: ", value});
+  }
+}
+
+}  // namespace crumble::capi

@@ -1,0 +1,84 @@
+// What the handles stand for.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "call.hpp"
+#include "crumble/fracture/fragments.hpp"
+#include "crumble/fracture/surface.hpp"
+#include "crumble/sim/recording.hpp"
+#include "crumble/sim/simulation.hpp"
+#include "handles.hpp"
+
+namespace crumble::capi {
+
+struct Mesh {
+  using Handle = crumble_mesh;
+  static constexpr const char* kName = "mesh";
+  static HandleTable table;
+
+  std::shared_ptr<const TetMesh> mesh;
+};
+
+struct Sim {
+  using Handle = crumble_sim;
+  static constexpr const char* kName = "sim";
+  static HandleTable table;
+
+  Sim(std::shared_ptr<const TetMesh> body, SimulationDef def);
+
+  /// Fragment of each node now.
+  const FragmentLabeler& fragments() noexcept;
+
+  std::shared_ptr<const TetMesh> mesh;  // at rest; borrowed by labeler and surface, which the simulation must not move
+  Simulation simulation;
+  bool has_floor = false;   // the first wall
+  std::vector<Pose> poses;  // per tool; room for the step
+  std::optional<Recording> recording;
+  FragmentLabeler labeler;
+  bool labels_stale = true;
+  std::unique_ptr<SurfaceExtractor> surface;  // from the first extraction on
+  bool surface_stale = true;
+};
+
+/// Gives an object to the caller: the handle in `out`.
+template <class Object>
+void publish(std::unique_ptr<Object> object, typename Object::Handle* out) {
+  *out = static_cast<typename Object::Handle>(Object::table.insert(object.get()));
+  object.release();
+}
+
+crumble_result fail_handle(const Call& call, const char* name, const void* handle, crumble_result result) noexcept;
+
+/// Runs `body(object, call)` with the object taken for this thread.
+template <class Object, class Body>
+crumble_result with(const char* function, typename Object::Handle handle, Body&& body) noexcept {
+  return guard(function, [&](const Call& call) -> crumble_result {
+    struct Taken {
+      const void* handle;
+      ~Taken() { Object::table.release(handle); }
+    };
+    void* object = nullptr;
+    const crumble_result result = handle ? Object::table.acquire(handle, object) : CRUMBLE_E_NULL;
+    if (result != CRUMBLE_OK) return fail_handle(call, Object::kName, handle, result);
+    const Taken taken{handle};
+    return body(*static_cast<Object*>(object), call);
+  });
+}
+
+template <class Object>
+crumble_result destroy(const char* function, typename Object::Handle handle) noexcept {
+  return guard(function, [&](const Call& call) -> crumble_result {
+    if (!handle) return CRUMBLE_OK;
+    void* object = nullptr;
+    const crumble_result result = Object::table.acquire(handle, object);
+    if (result != CRUMBLE_OK) return fail_handle(call, Object::kName, handle, result);
+    Object::table.remove(handle);
+    delete static_cast<Object*>(object);
+    return CRUMBLE_OK;
+  });
+}
+
+}  // namespace crumble::capi

@@ -1,0 +1,135 @@
+// A simulation's life and set-up.
+#include <string>
+
+#include "defs.hpp"
+#include "objects.hpp"
+#include "sim_def.hpp"
+#include "tool_def.hpp"
+
+namespace crumble::capi {
+namespace {
+
+Wall make_floor() {
+  return {{Vec3::UnitY(), 0}, {}};
+}
+
+void require_no_recording(const Sim& sim) {
+  if (sim.recording) throw Error(Code::state, "a recording is running: end it first");
+}
+
+// Rebuilds the simulation with what `change(definition)` makes of its definition.
+template <class Change>
+void set_up(Sim& sim, Change&& change) {
+  require_no_recording(sim);
+  if (const auto steps = sim.simulation.info().step; steps != 0) {
+    throw Error(Code::state, "the simulation has done " + std::to_string(steps) + " steps: reset it first");
+  }
+  SimulationDef def = sim.simulation.definition();
+  change(def);
+  sim.poses.reserve(def.tools.size());
+  Simulation next(std::move(def));
+  sim.simulation = std::move(next);
+  sim.poses.resize(sim.simulation.definition().tools.size());
+  sim.labels_stale = sim.surface_stale = true;
+}
+
+}  // namespace
+}  // namespace crumble::capi
+
+using namespace crumble;
+using namespace crumble::capi;
+
+crumble_result crumble_sim_create(crumble_mesh mesh, const crumble_sim_def* def, crumble_sim* sim) {
+  return guard(__func__, [&](const Call&) -> crumble_result {
+    require_pointer("sim", sim);
+    const crumble_sim_def given = def ? read_sim_def(def) : default_sim_def();
+    std::shared_ptr<const TetMesh> body;
+    const crumble_result result = with<Mesh>(__func__, mesh, [&](const Mesh& m, const Call&) {
+      body = m.mesh;
+      return CRUMBLE_OK;
+    });
+    if (result != CRUMBLE_OK) return result;
+    SimulationDef definition;
+    definition.mesh = *body;
+    definition.walls.clear();
+    if (given.floor) definition.walls.push_back(make_floor());
+    apply(given, definition);
+    auto object = std::make_unique<Sim>(std::move(body), std::move(definition));
+    object->has_floor = given.floor != 0;
+    publish(std::move(object), sim);
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_destroy(crumble_sim sim) {
+  return destroy<Sim>(__func__, sim);
+}
+
+crumble_result crumble_sim_get_def(crumble_sim sim, crumble_sim_def* def) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
+    write_struct("def", def, describe(s.simulation.definition(), s.has_floor));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def* def) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    const crumble_sim_def given = read_sim_def(def);
+    const bool floor = given.floor != 0;
+    set_up(s, [&](SimulationDef& definition) {
+      apply(given, definition);
+      if (floor && !s.has_floor) definition.walls.insert(definition.walls.begin(), make_floor());
+      if (!floor && s.has_floor) definition.walls.erase(definition.walls.begin());
+    });
+    s.has_floor = floor;
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_add_tool(crumble_sim sim, const crumble_tool_def* def, uint32_t* index) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    set_up(s, [&](SimulationDef& definition) { definition.tools.push_back(read_tool(def)); });
+    if (index) *index = static_cast<uint32_t>(s.poses.size() - 1);
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_add_wall(crumble_sim sim, const crumble_wall_def* def) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    set_up(s, [&](SimulationDef& definition) { definition.walls.push_back(read_wall(def)); });
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_fix_nodes(crumble_sim sim, const uint32_t* nodes, uint32_t count) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    if (count > 0) require_pointer("nodes", nodes);
+    require_at_most("count", count, static_cast<uint32_t>(s.mesh->node_count()));
+    set_up(s, [&](SimulationDef& definition) { definition.fixed_nodes.assign(nodes, nodes + count); });
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_fix_below(crumble_sim sim, double height) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    require_finite("height", height);
+    set_up(s, [&](SimulationDef& definition) { definition.fixed_nodes = nodes_below(*s.mesh, height); });
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_apply_paper_preset(crumble_sim sim) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    set_up(s, [](SimulationDef& definition) { apply_paper_preset(definition); });
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_reset(crumble_sim sim) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    require_no_recording(s);
+    s.simulation.reset();
+    s.labels_stale = s.surface_stale = true;
+    return CRUMBLE_OK;
+  });
+}

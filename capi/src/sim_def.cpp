@@ -1,0 +1,65 @@
+#include "sim_def.hpp"
+
+#include "defs.hpp"
+
+namespace crumble::capi {
+
+crumble_sim_def default_sim_def() {
+  return describe(SimulationDef{}, true);
+}
+
+crumble_sim_def read_sim_def(const crumble_sim_def* def) {
+  const crumble_sim_def given = read_def("def", def, default_sim_def());
+  require_at_most("floor", given.floor, 1);
+  require_at_most("mass_rule", given.mass_rule, CRUMBLE_MASS_EQUAL);
+  require_at_most("time_step_policy", given.time_step_policy, CRUMBLE_POLICY_UNCHECKED);
+  require_at_most("contact_rule", given.contact_rule, CRUMBLE_CONTACT_ALONG_MOTION);
+  require_at_most("mean_force", given.mean_force, 1);
+  require_at_most("reserved", given.reserved, 0);
+  return given;
+}
+
+void apply(const crumble_sim_def& from, SimulationDef& to) {
+  to.gravity = {from.gravity[0], from.gravity[1], from.gravity[2]};
+  to.material.stiffness = from.stiffness;
+  to.material.damping_ratio = from.damping_ratio;
+  to.material.length_limit = from.length_limit;
+  to.material.mass = from.mass;
+  to.mass_rule = static_cast<MassRule>(from.mass_rule);
+  to.step.policy = static_cast<TimeStepPolicy>(from.time_step_policy);
+  to.step.tau = from.tau;
+  to.step.iterations = from.iterations;
+  to.step.contact_rule = static_cast<ContactRule>(from.contact_rule);
+  to.step.cut_fade = from.cut_fade;
+  to.step.mean_force = from.mean_force != 0;
+}
+
+crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
+  crumble_sim_def out{};
+  out.struct_size = sizeof out;
+  out.floor = has_floor;
+  for (int axis = 0; axis < 3; ++axis) out.gravity[axis] = def.gravity[axis];
+  out.stiffness = def.material.stiffness;
+  out.damping_ratio = def.material.damping_ratio;
+  out.length_limit = def.material.length_limit;
+  out.mass = def.material.mass;
+  out.mass_rule = static_cast<std::uint32_t>(def.mass_rule);
+  out.time_step_policy = static_cast<std::uint32_t>(def.step.policy);
+  out.tau = def.step.tau;
+  out.iterations = def.step.iterations;
+  out.contact_rule = static_cast<std::uint32_t>(def.step.contact_rule);
+  out.cut_fade = def.step.cut_fade;
+  out.mean_force = def.step.mean_force;
+  return out;
+}
+
+}  // namespace crumble::capi
+
+using namespace crumble::capi;
+
+crumble_result crumble_sim_def_init(crumble_sim_def* def, uint32_t struct_size) {
+  return guard(__func__, [&](const Call&) {
+    write_struct("def", def, struct_size, default_sim_def());
+    return CRUMBLE_OK;
+  });
+}

@@ -1,0 +1,148 @@
+// What a servo loop calls. A step fails without memory: not by exceptions, whose texts take some.
+#include <algorithm>
+#include <cmath>
+
+#include "defs.hpp"
+#include "objects.hpp"
+
+namespace crumble::capi {
+namespace {
+
+Pose to_pose(const crumble_pose& pose) {
+  const double *p = pose.position, *q = pose.orientation;
+  return {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3])};
+}
+
+crumble_wrench to_c(const Wrench& wrench) {
+  crumble_wrench out;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.force[axis] = wrench.force[axis];
+    out.torque[axis] = wrench.torque[axis];
+  }
+  return out;
+}
+
+crumble_result fail_bad_pose(const Call& call, const crumble_pose* poses, std::uint32_t count) noexcept {
+  for (std::uint32_t tool = 0; tool < count; ++tool) {
+    const crumble_pose& pose = poses[tool];
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      if (!std::isfinite(pose.position[i])) {
+        return call.fail(CRUMBLE_E_BAD_POSE, {"pose ", tool, ": position[", i, "] is ", pose.position[i]});
+      }
+    }
+    if (is_valid(to_pose(pose))) continue;
+    const double* q = pose.orientation;
+    return call.fail(CRUMBLE_E_BAD_POSE, {"pose ", tool, ": orientation is no unit quaternion: ", q[0], ", ", q[1],
+                                          ", ", q[2], ", ", q[3]});
+  }
+  return call.fail(CRUMBLE_E_BAD_POSE, {"pose"});
+}
+
+// The step itself has been done, so only the recording can be given up.
+crumble_result record(Sim& sim, const Call& call) noexcept {
+  try {
+    sim.recording->add(sim.poses, sim.simulation.state_hash());
+    return CRUMBLE_OK;
+  } catch (...) {
+    sim.recording.reset();
+    return call.fail(CRUMBLE_E_NO_MEMORY, {"the step is done, but its recording found no memory and was dropped"});
+  }
+}
+
+crumble_result advance(Sim& sim, const Call& call, const crumble_pose* poses, std::uint32_t count) noexcept {
+  if (sim.poses.size() != count) {
+    return call.fail(CRUMBLE_E_OUT_OF_RANGE,
+                     {"tool_count is ", count, ", the simulation has ", std::uint64_t{sim.poses.size()}});
+  }
+  std::transform(poses, poses + count, sim.poses.begin(), to_pose);
+  const StepInfo& info = sim.simulation.step(sim.poses);
+  if (info.status == Code::bad_pose) return fail_bad_pose(call, poses, count);
+  if (info.new_cuts > 0) sim.labels_stale = sim.surface_stale = true;
+  if (info.status == Code::diverged) {
+    return call.fail(CRUMBLE_E_DIVERGED,
+                     {"node ", info.bad_node, " left the world in step ", info.step + 1, ": reset the simulation"});
+  }
+  return sim.recording ? record(sim, call) : CRUMBLE_OK;
+}
+
+crumble_result step_tools(const char* function, crumble_sim sim, const crumble_pose* poses, crumble_wrench* wrenches,
+                          std::uint32_t count) noexcept {
+  // before anything can fail: a loop that ignores results must not go on with an old force
+  if (wrenches) std::fill_n(wrenches, count, crumble_wrench{});
+  return with<Sim>(function, sim, [&](Sim& s, const Call& call) -> crumble_result {
+    if (count > 0 && !poses) return call.fail(CRUMBLE_E_NULL, {"pose must not be NULL"});
+    if (count > 0 && !wrenches) return call.fail(CRUMBLE_E_NULL, {"wrench must not be NULL"});
+    const crumble_result result = advance(s, call, poses, count);
+    if (result != CRUMBLE_OK) return result;
+    for (std::uint32_t tool = 0; tool < count; ++tool) wrenches[tool] = to_c(s.simulation.wrench(tool));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_step_info to_c(const StepInfo& info) {
+  crumble_step_info out{};
+  out.status = static_cast<std::int32_t>(info.status);
+  out.step = info.step;
+  out.time = info.time;
+  out.flags = info.flags;
+  out.contacts = info.contacts;
+  out.new_cuts = info.new_cuts;
+  out.bad_node = info.bad_node;
+  return out;
+}
+
+static_assert(std::uint32_t{CRUMBLE_STEP_TOOL_JUMPED} == kToolJumped);
+static_assert(std::uint32_t{CRUMBLE_STEP_CONTACT_SUSPENDED} == kContactSuspended);
+static_assert(std::uint32_t{CRUMBLE_STEP_GUARDED} == kGuarded);
+
+crumble_counters to_c(const Counters& counters) {
+  return {
+      0, 0, counters.guarded_nodes, counters.cuts, counters.tool_jumps, counters.suspended_steps, counters.bad_poses};
+}
+
+crumble_profile to_c(const StepProfile& profile) {
+  return {0,
+          0,
+          profile.move_tool,
+          profile.find_contacts,
+          profile.project_contacts,
+          profile.solve_network,
+          profile.cut_springs,
+          profile.sum_reaction,
+          profile.finish_step};
+}
+
+}  // namespace
+}  // namespace crumble::capi
+
+using namespace crumble::capi;
+
+crumble_result crumble_sim_step(crumble_sim sim, const crumble_pose* pose, crumble_wrench* wrench) {
+  return step_tools(__func__, sim, pose, wrench, 1);
+}
+
+crumble_result crumble_sim_step_tools(crumble_sim sim, const crumble_pose* poses, crumble_wrench* wrenches,
+                                      uint32_t tool_count) {
+  return step_tools(__func__, sim, poses, wrenches, tool_count);
+}
+
+crumble_result crumble_sim_get_step_info(crumble_sim sim, crumble_step_info* info) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
+    write_struct("info", info, to_c(s.simulation.info()));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters* counters) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
+    write_struct("counters", counters, to_c(s.simulation.counters()));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile* profile) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
+    write_struct("profile", profile, to_c(s.simulation.profile()));
+    return CRUMBLE_OK;
+  });
+}

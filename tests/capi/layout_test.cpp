@@ -1,0 +1,157 @@
+// The ABI: sizes and places as released. A line here changes only by being added to.
+#include <cstring>
+
+#include "capi/c_client.h"
+#include "capi/rig.hpp"
+
+namespace crumble {
+namespace {
+
+struct Row {
+  const char *type, *field;
+  std::uint32_t bytes;
+};
+
+// On hosts with 64-bit pointers.
+constexpr Row kReleased[] = {
+    {"crumble_view", "", 32},
+    {"crumble_view", "data", 0},
+    {"crumble_view", "count", 8},
+    {"crumble_view", "stride", 16},
+    {"crumble_view", "components", 20},
+    {"crumble_view", "scalar_type", 24},
+    {"crumble_view", "reserved", 28},
+    {"crumble_mesh_def", "", 64},
+    {"crumble_mesh_def", "struct_size", 0},
+    {"crumble_mesh_def", "shape", 4},
+    {"crumble_mesh_def", "surface_nodes", 8},
+    {"crumble_mesh_def", "inside_nodes", 12},
+    {"crumble_mesh_def", "size", 16},
+    {"crumble_mesh_def", "radius", 40},
+    {"crumble_mesh_def", "height", 48},
+    {"crumble_mesh_def", "spacing", 56},
+    {"crumble_mesh_info", "", 32},
+    {"crumble_mesh_info", "struct_size", 0},
+    {"crumble_mesh_info", "node_count", 4},
+    {"crumble_mesh_info", "surface_node_count", 8},
+    {"crumble_mesh_info", "spring_count", 12},
+    {"crumble_mesh_info", "tetrahedron_count", 16},
+    {"crumble_mesh_info", "boundary_triangle_count", 20},
+    {"crumble_mesh_info", "volume", 24},
+    {"crumble_sim_def", "", 104},
+    {"crumble_sim_def", "struct_size", 0},
+    {"crumble_sim_def", "floor", 4},
+    {"crumble_sim_def", "gravity", 8},
+    {"crumble_sim_def", "stiffness", 32},
+    {"crumble_sim_def", "damping_ratio", 40},
+    {"crumble_sim_def", "length_limit", 48},
+    {"crumble_sim_def", "mass", 56},
+    {"crumble_sim_def", "mass_rule", 64},
+    {"crumble_sim_def", "time_step_policy", 68},
+    {"crumble_sim_def", "tau", 72},
+    {"crumble_sim_def", "iterations", 80},
+    {"crumble_sim_def", "contact_rule", 84},
+    {"crumble_sim_def", "cut_fade", 88},
+    {"crumble_sim_def", "mean_force", 96},
+    {"crumble_sim_def", "reserved", 100},
+    {"crumble_tool_def", "", 96},
+    {"crumble_tool_def", "struct_size", 0},
+    {"crumble_tool_def", "shape", 4},
+    {"crumble_tool_def", "radius", 8},
+    {"crumble_tool_def", "length", 16},
+    {"crumble_tool_def", "size", 24},
+    {"crumble_tool_def", "sides", 48},
+    {"crumble_tool_def", "vertex_count", 52},
+    {"crumble_tool_def", "triangle_count", 56},
+    {"crumble_tool_def", "reserved", 60},
+    {"crumble_tool_def", "static_friction", 64},
+    {"crumble_tool_def", "dynamic_friction", 72},
+    {"crumble_tool_def", "vertices", 80},
+    {"crumble_tool_def", "triangles", 88},
+    {"crumble_wall_def", "", 56},
+    {"crumble_wall_def", "struct_size", 0},
+    {"crumble_wall_def", "reserved", 4},
+    {"crumble_wall_def", "normal", 8},
+    {"crumble_wall_def", "offset", 32},
+    {"crumble_wall_def", "static_friction", 40},
+    {"crumble_wall_def", "dynamic_friction", 48},
+    {"crumble_pose", "", 56},
+    {"crumble_pose", "position", 0},
+    {"crumble_pose", "orientation", 24},
+    {"crumble_wrench", "", 48},
+    {"crumble_wrench", "force", 0},
+    {"crumble_wrench", "torque", 24},
+    {"crumble_step_info", "", 40},
+    {"crumble_step_info", "struct_size", 0},
+    {"crumble_step_info", "status", 4},
+    {"crumble_step_info", "step", 8},
+    {"crumble_step_info", "time", 16},
+    {"crumble_step_info", "flags", 24},
+    {"crumble_step_info", "contacts", 28},
+    {"crumble_step_info", "new_cuts", 32},
+    {"crumble_step_info", "bad_node", 36},
+    {"crumble_counters", "", 48},
+    {"crumble_counters", "struct_size", 0},
+    {"crumble_counters", "reserved", 4},
+    {"crumble_counters", "guarded_nodes", 8},
+    {"crumble_counters", "cuts", 16},
+    {"crumble_counters", "tool_jumps", 24},
+    {"crumble_counters", "suspended_steps", 32},
+    {"crumble_counters", "bad_poses", 40},
+    {"crumble_profile", "", 64},
+    {"crumble_profile", "struct_size", 0},
+    {"crumble_profile", "reserved", 4},
+    {"crumble_profile", "move_tool", 8},
+    {"crumble_profile", "find_contacts", 16},
+    {"crumble_profile", "project_contacts", 24},
+    {"crumble_profile", "solve_network", 32},
+    {"crumble_profile", "cut_springs", 40},
+    {"crumble_profile", "sum_reaction", 48},
+    {"crumble_profile", "finish_step", 56},
+    {"crumble_surface_info", "", 24},
+    {"crumble_surface_info", "struct_size", 0},
+    {"crumble_surface_info", "vertex_count", 4},
+    {"crumble_surface_info", "triangle_count", 8},
+    {"crumble_surface_info", "skin_triangle_count", 12},
+    {"crumble_surface_info", "fragment_count", 16},
+    {"crumble_surface_info", "reserved", 20},
+};
+
+TEST(Layout, IsTheReleasedOne) {
+  if (sizeof(void*) != 8) GTEST_SKIP() << "the table is for 64-bit hosts";
+  std::size_t row = 0;
+  for (const c_layout* now = c_layouts; now->type; ++now, ++row) {
+    ASSERT_LT(row, std::size(kReleased));
+    const std::string what = std::string(now->type) + "." + now->field;
+    EXPECT_STREQ(now->type, kReleased[row].type) << what;
+    EXPECT_STREQ(now->field, kReleased[row].field) << what;
+    EXPECT_EQ(now->bytes, kReleased[row].bytes) << what;
+  }
+  EXPECT_EQ(row, std::size(kReleased));
+}
+
+TEST(Version, AgreesWithTheHeader) {
+  EXPECT_EQ(crumble_version(), std::uint32_t{CRUMBLE_VERSION_NUMBER});
+  EXPECT_EQ(std::string(crumble_version_string()), CRUMBLE_EXPECTED_VERSION);
+  EXPECT_NE(std::string(crumble_build_info()).find(CRUMBLE_EXPECTED_VERSION), std::string::npos);
+  EXPECT_RESULT(CRUMBLE_OK, crumble_check_version(CRUMBLE_VERSION_NUMBER));
+  EXPECT_RESULT(CRUMBLE_OK, crumble_check_version(CRUMBLE_VERSION_NUMBER + 7));  // a patch
+  EXPECT_RESULT(CRUMBLE_E_VERSION, crumble_check_version(CRUMBLE_VERSION_NUMBER + 1000));
+  EXPECT_RESULT(CRUMBLE_E_VERSION, crumble_check_version(CRUMBLE_VERSION_NUMBER + 1000000));
+  EXPECT_RESULT(CRUMBLE_E_VERSION, crumble_check_version(0));
+}
+
+TEST(Results, HaveNames) {
+  EXPECT_STREQ(crumble_result_name(CRUMBLE_OK), "CRUMBLE_OK");
+  EXPECT_STREQ(crumble_result_name(CRUMBLE_E_NULL), "CRUMBLE_E_NULL");
+  EXPECT_STREQ(crumble_result_name(CRUMBLE_E_BUFFER_TOO_SMALL), "CRUMBLE_E_BUFFER_TOO_SMALL");
+  for (crumble_result code = CRUMBLE_E_INTERNAL; code < 0; ++code) {
+    EXPECT_EQ(name_of(code).rfind("CRUMBLE_E_", 0), 0u) << code;
+    for (crumble_result other = CRUMBLE_E_INTERNAL; other < code; ++other) EXPECT_NE(name_of(code), name_of(other));
+  }
+  EXPECT_STREQ(crumble_result_name(1), "unknown");
+  EXPECT_STREQ(crumble_result_name(CRUMBLE_E_INTERNAL - 1), "unknown");
+}
+
+}  // namespace
+}  // namespace crumble
