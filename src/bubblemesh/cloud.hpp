@@ -11,9 +11,9 @@ namespace crumble {
 
 /// Three groups in this order: features (corners, then creases), surface, inside. Features never move.
 struct Cloud {
-  std::vector<Vec3> positions;   // metres
+  std::vector<Vec3> positions;  // metres
   std::vector<NodeKind> kinds;
-  std::vector<Vec3> normals;     // outward unit vector at surface nodes, zero elsewhere
+  std::vector<Vec3> normals;  // outward unit vector at surface nodes, zero elsewhere
   std::size_t feature_count = 0;
   std::size_t surface_count = 0;  // features + surface
 

@@ -3,8 +3,8 @@
 //
 // Because the tests are exact and a point ON a sphere does not conflict, no special case is left:
 // - The cavity's faces never lie in one plane with the point. Such a plane would cut the spheres on both sides of the
-//   face in the same circle, and the point would lie inside one and not inside the other. So no flat tetrahedron is ever
-//   made, however many points are cospherical, as in a lattice nearly all are.
+//   face in the same circle, and the point would lie inside one and not inside the other. So no flat tetrahedron is
+//   ever made, however many points are cospherical, as in a lattice nearly all are.
 // - A point on a face or an edge lies strictly inside the spheres of all tetrahedra around it, so they all go.
 // - The walk to the tetrahedron that holds a point ends, since the triangulation is Delaunay at all times.
 //
@@ -25,7 +25,6 @@ namespace crumble {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr std::uint32_t kCubeCorners = 8;
 constexpr std::int32_t kCube = 1 << kCoordinateBits;
 
 struct Cell {
@@ -68,15 +67,22 @@ class FaceMatcher {
 class Triangulation {
  public:
   explicit Triangulation(std::span<const GridPoint> points) : points_(points.begin(), points.end()) {
-    points_.insert(points_.end(), {{0, 0, 0}, {kCube, 0, 0}, {0, kCube, 0}, {kCube, kCube, 0},
-                                   {0, 0, kCube}, {kCube, 0, kCube}, {0, kCube, kCube}, {kCube, kCube, kCube}});
+    points_.insert(points_.end(), {{0, 0, 0},
+                                   {kCube, 0, 0},
+                                   {0, kCube, 0},
+                                   {kCube, kCube, 0},
+                                   {0, 0, kCube},
+                                   {kCube, 0, kCube},
+                                   {0, kCube, kCube},
+                                   {kCube, kCube, kCube}});
     make_cube(static_cast<std::uint32_t>(points.size()));
   }
 
   void insert(std::uint32_t p) {
     const std::uint32_t start = locate(p);
     for (const std::uint32_t v : cells_[start].vertex) {
-      if (points_[v] == points_[p]) throw Error(Code::duplicate_node, "delaunay: point " + std::to_string(p) + " stands twice");
+      if (points_[v] == points_[p])
+        throw Error(Code::duplicate_node, "delaunay: point " + std::to_string(p) + " stands twice");
     }
     find_cavity(start, p);
     fill_cavity(p);
@@ -85,7 +91,8 @@ class Triangulation {
   std::vector<Tetrahedron> tetrahedra(std::uint32_t point_count) const {
     std::vector<Tetrahedron> result;
     for (const Cell& cell : cells_) {
-      if (std::ranges::all_of(cell.vertex, [&](std::uint32_t v) { return v < point_count; })) result.push_back(cell.vertex);
+      if (std::ranges::all_of(cell.vertex, [&](std::uint32_t v) { return v < point_count; }))
+        result.push_back(cell.vertex);
     }
     return result;
   }
@@ -101,8 +108,8 @@ class Triangulation {
   void make_cube(std::uint32_t base) {
     constexpr std::array<std::array<std::uint32_t, 2>, 6> kMiddle{{{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}};
     for (std::uint32_t k = 0; k < 6; ++k) {
-      cells_.push_back({{base, base + kMiddle[k][0], base + kMiddle[k][1], base + 7},
-                        {kNone, (k + 1) % 6, (k + 5) % 6, kNone}});
+      cells_.push_back(
+          {{base, base + kMiddle[k][0], base + kMiddle[k][1], base + 7}, {kNone, (k + 1) % 6, (k + 5) % 6, kNone}});
     }
     seen_.assign(6, 0);
   }

@@ -10,10 +10,10 @@
 namespace crumble {
 namespace {
 
-constexpr double kReach = 1.5;       // in units of d: how far a bubble sees
-constexpr int kSettle = 25;          // iterations after each change
-constexpr int kFinalSettle = 120;    // and after the last
-constexpr std::size_t kShare = 8;    // each change does this part of what is left, at least one node
+constexpr double kReach = 1.5;     // in units of d: how far a bubble sees
+constexpr int kSettle = 25;        // iterations after each change
+constexpr int kFinalSettle = 120;  // and after the last
+constexpr std::size_t kShare = 8;  // each change does this part of what is left, at least one node
 
 NeighbourGrid grid_of(const Shape& shape, double spacing, const Cloud& cloud) {
   NeighbourGrid grid(shape.lower(), shape.upper(), kReach * spacing);
@@ -81,7 +81,9 @@ double cube_root(double x) {
 void match_count(std::string_view field, const Shape& shape, double spacing, std::size_t first, std::uint32_t wanted,
                  const std::vector<SurfacePoint>& places, Cloud& cloud, const std::function<void(int, double)>& relax) {
   const NodeKind kind = first == cloud.surface_count ? NodeKind::inside : NodeKind::surface;
-  const auto present = [&] { return kind == NodeKind::surface ? cloud.surface_count : cloud.size() - cloud.surface_count; };
+  const auto present = [&] {
+    return kind == NodeKind::surface ? cloud.surface_count : cloud.size() - cloud.surface_count;
+  };
   const std::size_t features = kind == NodeKind::surface ? cloud.feature_count : 0;
   const double natural = static_cast<double>(present());
   const double least = std::max(static_cast<double>(features), std::ceil(0.6 * natural));
@@ -92,8 +94,10 @@ void match_count(std::string_view field, const Shape& shape, double spacing, std
     const std::size_t before = present();
     const std::size_t distance = before > wanted ? before - wanted : wanted - before;
     const std::size_t share = std::max<std::size_t>(1, distance / kShare);
-    if (before > wanted) remove_crowded(shape, spacing, first, share, cloud);
-    else insert_in_gaps(shape, spacing, kind, share, places, cloud);
+    if (before > wanted)
+      remove_crowded(shape, spacing, first, share, cloud);
+    else
+      insert_in_gaps(shape, spacing, kind, share, places, cloud);
     if (present() == before) throw Error(Code::mesh, std::string(field) + ": no room for another node");
     relax(kSettle, stretch);
   }

@@ -6,8 +6,15 @@
 
 namespace crumble {
 
-/// A node on each corner; each crease cut into equal pieces of about `spacing`. Equal pieces are where bubbles on a
-/// line come to rest, so no relaxation is needed. Returns the pieces' ends: edges that the mesh's surface must have.
-std::vector<Edge> place_features(const Shape& shape, double spacing, Cloud& cloud);
+/// A piece of a crease: an edge that the mesh's surface must have.
+struct CreaseEdge {
+  Edge nodes;
+  std::size_t crease;  // index into Shape::creases()
+};
+
+/// A node on each corner; each crease cut into equal pieces of about `spacing`, and extra_pieces[crease] more. Equal
+/// pieces are where bubbles on a line come to rest, so no relaxation is needed.
+std::vector<CreaseEdge> place_features(const Shape& shape, double spacing, const std::vector<int>& extra_pieces,
+                                       Cloud& cloud);
 
 }  // namespace crumble

@@ -1,7 +1,8 @@
 // Edge removal: the ring of vertices around the edge a-b is a polygon; every triangulation of it gives tetrahedra
 // by joining each triangle to a and to b. The one whose worst tetrahedron is best is found by dynamic programming over
-// the polygon's pieces (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the topological improvement of
-// tetrahedral meshes", 2002). Around a boundary edge the ring is open, and the side that closes it becomes a new boundary edge.
+// the polygon's pieces (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the topological improvement
+// of tetrahedral meshes", 2002). Around a boundary edge the ring is open, and the side that closes it becomes a new
+// boundary edge.
 //
 // The link check: an edge or face that a flip would make must not exist yet. Without it a flip can be geometrically
 // sound and still glue the mesh to itself somewhere else.
@@ -27,7 +28,8 @@ class EdgeRemoval {
     }
     if (!ring_.closed && !surface_stays_smooth()) return false;
     if (ring_.size == 2) return peel();
-    if (ring_.size == 3 && ring_.closed && tets_.has_face(ring_.vertices[0], ring_.vertices[1], ring_.vertices[2])) return false;
+    if (ring_.size == 3 && ring_.closed && tets_.has_face(ring_.vertices[0], ring_.vertices[1], ring_.vertices[2]))
+      return false;
     if (best_triangulation() <= worst_) return false;
     collect(0, ring_.size - 1);
     tets_.replace(std::span(ring_.tets).first(ring_.tet_count()), made_);
@@ -44,7 +46,8 @@ class EdgeRemoval {
 
   bool surface_stays_smooth() const {
     const std::uint32_t first = ring_.vertices[0], last = ring_.vertices[ring_.size - 1];
-    const std::array<Vec3, 4> normals{normal(b_, a_, first), normal(a_, b_, last), normal(first, b_, last), normal(first, last, a_)};
+    const std::array<Vec3, 4> normals{normal(b_, a_, first), normal(a_, b_, last), normal(first, b_, last),
+                                      normal(first, last, a_)};
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < i; ++j) {
         if (!(dot(normals[i], normals[j]) >= kSameSurface)) return false;
@@ -111,7 +114,8 @@ class EdgeRemoval {
 
 }  // namespace
 
-bool remove_edge(const Cloud& cloud, Measure measure, std::uint32_t a, std::uint32_t b, TetComplex& tets, double enough) {
+bool remove_edge(const Cloud& cloud, Measure measure, std::uint32_t a, std::uint32_t b, TetComplex& tets,
+                 double enough) {
   return EdgeRemoval(cloud, measure, a, b, tets, enough).apply();
 }
 

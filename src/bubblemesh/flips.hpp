@@ -18,13 +18,12 @@ inline double quality_of(const Cloud& cloud, Measure measure, const Tetrahedron&
 /// A flip is made when the worst quality afterwards is above the worst before, or above `enough` if that is less.
 inline constexpr double kOnlyBetter = std::numeric_limits<double>::infinity();
 
-/// Replaces the tetrahedra around the edge a-b by the best ones without it. At the boundary this turns an edge of a smooth
-/// piece of the surface, or takes off a flat tetrahedron lying on it; creases stay. False when it is not made.
+/// Replaces the tetrahedra around the edge a-b by the best ones without it. At the boundary this turns an edge of a
+/// smooth piece of the surface, or takes off a flat tetrahedron lying on it; creases stay. False when it is not made.
 bool remove_edge(const Cloud& cloud, Measure measure, std::uint32_t a, std::uint32_t b, TetComplex& tets,
                  double enough = kOnlyBetter);
 
 /// Replaces the two tetrahedra at a face by three around a new edge. False when it is not made.
-bool flip_face(const Cloud& cloud, Measure measure, TetId tet, int face, TetComplex& tets,
-               double enough = kOnlyBetter);
+bool flip_face(const Cloud& cloud, Measure measure, TetId tet, int face, TetComplex& tets, double enough = kOnlyBetter);
 
 }  // namespace crumble

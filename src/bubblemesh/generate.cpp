@@ -9,6 +9,8 @@
 #include "bubblemesh/improve.hpp"
 #include "bubblemesh/lattice.hpp"
 #include "bubblemesh/populate.hpp"
+#include "bubblemesh/relax.hpp"
+#include "bubblemesh/repair.hpp"
 #include "bubblemesh/restrict.hpp"
 #include "bubblemesh/row_order.hpp"
 #include "crumble/base/error.hpp"
@@ -18,6 +20,12 @@ namespace crumble {
 namespace {
 
 constexpr double kMostNodes = 5e6;
+constexpr double kFinestSpacing = 1e-9,
+                 kCoarsestSpacing = 1e9;  // metres; cubes of them are far from under- and overflow
+constexpr double kFarthestOffset = 1000;  // in spacings; the lattice repeats after a few
+constexpr double kLeastThickness = 1.25;  // in spacings; random thinner spheres failed, 2000 of this thickness did not
+constexpr int kRepairRounds = 6;
+constexpr int kRepairIterations = 30;
 
 double expected_nodes(const Shape& shape, double spacing) {
   const double inside = std::sqrt(2.0) * (shape.volume() / spacing / spacing / spacing);
@@ -27,25 +35,25 @@ double expected_nodes(const Shape& shape, double spacing) {
 
 void check_options(const Shape& shape, const BubbleMeshOptions& options) {
   require_positive("spacing", options.spacing);
-  require_finite("offset.x", options.offset.x());
-  require_finite("offset.y", options.offset.y());
-  require_finite("offset.z", options.offset.z());
+  require_in_range("spacing", options.spacing, kFinestSpacing, kCoarsestSpacing);
+  require_in_range("offset.x", options.offset.x(), -kFarthestOffset, kFarthestOffset);
+  require_in_range("offset.y", options.offset.y(), -kFarthestOffset, kFarthestOffset);
+  require_in_range("offset.z", options.offset.z(), -kFarthestOffset, kFarthestOffset);
   if (options.surface_nodes.has_value() != options.inside_nodes.has_value()) {
     throw Error(Code::invalid_value, "surface_nodes and inside_nodes must be given together");
   }
   const double greatest = largest_spacing(shape);
   if (options.spacing > greatest) {
-    throw Error(Code::too_coarse, "spacing " + to_text(options.spacing) + " m is too coarse for this body: it may be at most " +
-                                      to_text(greatest) + " m");
+    throw Error(Code::too_coarse, "spacing " + to_text(options.spacing) +
+                                      " m is too coarse for this body: it may be at most " + to_text(greatest) + " m");
   }
   const double nodes = expected_nodes(shape, options.spacing);
   if (!(nodes <= kMostNodes)) {
-    throw Error(Code::too_large, "spacing " + to_text(options.spacing) + " m would give about " + to_text(std::floor(nodes)) +
-                                     " nodes, more than " + to_text(kMostNodes));
+    throw Error(Code::too_large, "spacing " + to_text(options.spacing) + " m would give about " +
+                                     to_text(std::floor(nodes)) + " nodes, more than 5 million");
   }
 }
 
-/// Whole steps of the lattice move nothing; taking them off keeps the row numbers small.
 Vec3 lattice_origin(const Shape& shape, const BubbleMeshOptions& options) {
   return 0.5 * (shape.lower() + shape.upper()) + options.spacing * options.offset;
 }
@@ -58,43 +66,84 @@ void require_valid(const TetMesh& mesh, const MeshQuality& quality) {
   if (quality.boundary_defects.total() != 0) {
     fail("its surface has " + std::to_string(quality.boundary_defects.total()) + " defects");
   }
-  if (quality.euler_defect != 0) fail("it is not one solid ball (Euler defect " + std::to_string(quality.euler_defect) + ")");
+  if (quality.euler_defect != 0)
+    fail("it is not one solid ball (Euler defect " + std::to_string(quality.euler_defect) + ")");
   std::vector<char> on_boundary(mesh.node_count(), 0);
   for (const Triangle& t : mesh.boundary) {
     for (const std::uint32_t v : t) on_boundary[v] = 1;
   }
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
-    if (on_boundary[i] != (mesh.kinds[i] != NodeKind::inside)) fail((on_boundary[i] ? "inside node " : "surface node ") + std::to_string(i) + (on_boundary[i] ? " lies on its boundary" : " lies under its boundary"));
+    if (on_boundary[i] != (mesh.kinds[i] != NodeKind::inside))
+      fail((on_boundary[i] ? "inside node " : "surface node ") + std::to_string(i) +
+           (on_boundary[i] ? " lies on its boundary" : " lies under its boundary"));
   }
+}
+
+/// Nodes and tetrahedra before improvement.
+struct Draft {
+  Cloud cloud;
+  std::vector<CreaseEdge> crease_edges;
+  std::vector<Tetrahedron> tetrahedra;
+};
+
+void populate(const Shape& shape, const BubbleMeshOptions& options, const LatticeFrame& frame, Cloud& cloud) {
+  const Carving carving = carve(shape, frame);
+  populate_surface(shape, options.spacing, carving, options.surface_nodes, cloud);
+  populate_inside(shape, options.spacing, carving, options.inside_nodes, cloud);
+}
+
+Draft make_draft(const Shape& shape, const BubbleMeshOptions& options, const LatticeFrame& frame) {
+  const double d = options.spacing;
+  const bool exact = options.surface_nodes.has_value();
+  std::vector<int> extra_pieces(shape.creases().size(), 0);
+  Draft draft;
+  for (int round = 0; round < kRepairRounds; ++round) {
+    if (draft.cloud.size() == 0) {
+      draft.crease_edges = place_features(shape, d, extra_pieces, draft.cloud);
+      populate(shape, options, frame, draft.cloud);
+    }
+    draft.tetrahedra = delaunay(quantize(draft.cloud.positions));
+    restrict_to_shape(shape, d, draft.cloud, draft.tetrahedra);
+    const Flaws flaws = find_flaws(draft.cloud, draft.crease_edges, draft.tetrahedra);
+    if (!flaws.broken_creases.empty()) {  // start again with more nodes on them
+      for (const std::size_t crease : flaws.broken_creases) ++extra_pieces[crease];
+      draft.cloud = {};
+    } else if (!flaws.exposed.empty() && !exact) {
+      bring_to_surface(shape, flaws.exposed, draft.cloud);
+      relax_surface(shape, d, kRepairIterations, draft.cloud);
+      relax_inside(shape, d, kRepairIterations, draft.cloud);
+    } else {
+      return draft;
+    }
+  }
+  fail("nodes and sharp edges do not find their places");
 }
 
 }  // namespace
 
-double largest_spacing(const Shape& shape) { return shape.least_thickness(); }
+double largest_spacing(const Shape& shape) {
+  return shape.least_thickness() / kLeastThickness;
+}
 
 BubbleMesh generate(const Shape& shape, const BubbleMeshOptions& options) {
   check_options(shape, options);
-  const double d = options.spacing;
-  const LatticeFrame frame(options.lattice, lattice_origin(shape, options), d);
-
-  Cloud cloud;
-  place_features(shape, d, cloud);
-  const Carving carving = carve(shape, frame);
-  populate_surface(shape, d, carving, options.surface_nodes, cloud);
-  populate_inside(shape, d, carving, options.inside_nodes, cloud);
-
-  std::vector<Tetrahedron> tetrahedra = delaunay(quantize(cloud.positions));
-  restrict_to_shape(shape, d, cloud, tetrahedra);
-  improve(shape, d, cloud, tetrahedra);
-  put_in_row_order(frame, cloud, tetrahedra);
+  const LatticeFrame frame(options.lattice, lattice_origin(shape, options), options.spacing);
+  Draft draft = make_draft(shape, options, frame);
+  improve(shape, options.spacing, draft.cloud, draft.tetrahedra);
+  const bool creases_kept = find_flaws(draft.cloud, draft.crease_edges, draft.tetrahedra).broken_creases.empty();
+  put_in_row_order(frame, draft.cloud, draft.tetrahedra);
 
   BubbleMesh result;
-  result.mesh = make_tet_mesh(std::move(cloud.positions), std::move(tetrahedra), std::move(cloud.kinds));
+  result.mesh =
+      make_tet_mesh(std::move(draft.cloud.positions), std::move(draft.tetrahedra), std::move(draft.cloud.kinds));
   result.quality = measure_quality(result.mesh);
   require_valid(result.mesh, result.quality);
-  result.volume_error = (volume(result.mesh) - shape.volume()) / shape.volume();
-  if (shape.least_thickness() < 2 * d) {
-    result.warnings.push_back("the body is thinner than two spacings: " + to_text(shape.least_thickness()) + " m at " + to_text(d) + " m");
+  if (!creases_kept) fail("a sharp edge of the body is missing");
+  const double meshed = volume(TriangleMesh{result.mesh.positions, result.mesh.boundary});
+  result.volume_error = (meshed - shape.volume()) / shape.volume();
+  if (shape.least_thickness() < 2 * options.spacing) {
+    result.warnings.push_back("the body is thinner than two spacings: " + to_text(shape.least_thickness()) + " m at " +
+                              to_text(options.spacing) + " m");
   }
   return result;
 }

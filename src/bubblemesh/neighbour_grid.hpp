@@ -72,7 +72,8 @@ class NeighbourGrid {
     return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(count_[axis] - 1)));
   }
   std::size_t index(int x, int y, int z) const {
-    return static_cast<std::size_t>(x) + static_cast<std::size_t>(count_[0]) *
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(count_[0]) *
                (static_cast<std::size_t>(y) + static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(z));
   }
 

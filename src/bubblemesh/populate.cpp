@@ -12,16 +12,20 @@ namespace {
 constexpr double kSurfaceDepth = 1.7 / 4.4;  // all lengths here in units of d
 constexpr double kTooClose = 0.62;           // of two bubbles this near, one goes
 constexpr double kTooCloseInside = 0.45;     // the same for a bubble inside and one on the surface
-constexpr double kSurfaceGap = 0.80;         // a place this far from all bubbles gets one
+constexpr double kSurfaceGap = 0.74;         // a place this far from all bubbles gets one
 constexpr double kInsideGap = 0.82;
-constexpr std::size_t kSmallBody = 5000;     // nodes; below, time is no matter
+constexpr std::size_t kSmallBody = 5000;  // nodes; below, time is no matter
 
 struct Effort {
   int rounds, iterations;
 };
-Effort effort(std::size_t nodes) { return nodes < kSmallBody ? Effort{6, 120} : Effort{3, 40}; }
+Effort effort(std::size_t nodes) {
+  return nodes < kSmallBody ? Effort{6, 120} : Effort{3, 20};
+}
 
-NeighbourGrid make_grid(const Shape& shape, double spacing) { return {shape.lower(), shape.upper(), spacing}; }
+NeighbourGrid make_grid(const Shape& shape, double spacing) {
+  return {shape.lower(), shape.upper(), spacing};
+}
 
 /// Keeps every node of [first, size) that is far enough from all kept before it.
 bool thin_out(const Shape& shape, double spacing, std::size_t first, Cloud& cloud) {
@@ -55,8 +59,9 @@ bool fill_gaps(const Shape& shape, double spacing, double gap, NodeKind kind, co
 
 /// Points of a lattice twice as fine, at depths [least, greatest] d.
 template <class Visit>
-void for_each_fine_point(const Shape& shape, double spacing, double least, double greatest, Visit visit) {
-  const LatticeFrame fine(Lattice::fcc, 0.5 * (shape.lower() + shape.upper()), spacing / 2);
+void for_each_fine_point(const Shape& shape, double spacing, double fineness, double least, double greatest,
+                         Visit visit) {
+  const LatticeFrame fine(Lattice::fcc, 0.5 * (shape.lower() + shape.upper()), spacing / fineness);
   const Vec3 margin = Vec3::Constant(std::max(0.0, -least) * spacing);
   fine.for_each_in(shape.lower() - margin, shape.upper() + margin, [&](const Vec3& p) {
     const double depth = -shape.signed_distance(p) / spacing;
@@ -66,14 +71,15 @@ void for_each_fine_point(const Shape& shape, double spacing, double least, doubl
 
 std::vector<SurfacePoint> surface_places(const Shape& shape, double spacing) {
   std::vector<SurfacePoint> places;
-  for_each_fine_point(shape, spacing, -0.3, 0.3, [&](const Vec3& p) { places.push_back(shape.project(p)); });
+  for_each_fine_point(shape, spacing, 3, -0.3, 0.3, [&](const Vec3& p) { places.push_back(shape.project(p)); });
   return places;
 }
 
 std::vector<SurfacePoint> inside_places(const Shape& shape, double spacing) {
   std::vector<SurfacePoint> places;
-  for_each_fine_point(shape, spacing, kTooCloseInside, 2.5,
-                      [&](const Vec3& p) { places.push_back({p, Vec3::Zero()}); });
+  for_each_fine_point(shape, spacing, 2, kTooCloseInside, 2.5, [&](const Vec3& p) {
+    places.push_back({p, Vec3::Zero()});
+  });
   return places;
 }
 
@@ -90,8 +96,10 @@ Carving carve(const Shape& shape, const LatticeFrame& frame) {
   const Vec3 reach = Vec3::Constant(margin);
   frame.for_each_in(shape.lower() - reach, shape.upper() + reach, [&](const Vec3& p) {
     const double distance = shape.signed_distance(p);
-    if (distance < -margin) carving.inside.push_back(p);
-    else if (distance <= margin) near.push_back({std::abs(distance), p});
+    if (distance < -margin)
+      carving.inside.push_back(p);
+    else if (distance <= margin)
+      near.push_back({std::abs(distance), p});
   });
   std::stable_sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.distance < b.distance; });
   for (const Near& n : near) carving.near_surface.push_back(n.point);

@@ -19,8 +19,9 @@ struct Carving {
 Carving carve(const Shape& shape, const LatticeFrame& frame);
 
 /// Fills the surface, then the inside, with bubbles at rest: relax, take out where they crowd, put in where they gape,
-/// until nothing changes. Features must stand in the cloud already. With `exact`, goes on until there are so many surface
-/// nodes (features included) or inside nodes; throws Error(out_of_range) if that is too far from the natural number.
+/// until nothing changes. Features must stand in the cloud already. With `exact`, goes on until there are so many
+/// surface nodes (features included) or inside nodes; throws Error(out_of_range) if that is too far from the natural
+/// number.
 void populate_surface(const Shape& shape, double spacing, const Carving& carving, std::optional<std::uint32_t> exact,
                       Cloud& cloud);
 void populate_inside(const Shape& shape, double spacing, const Carving& carving, std::optional<std::uint32_t> exact,

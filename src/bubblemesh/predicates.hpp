@@ -1,8 +1,8 @@
 // Orientation and in-sphere tests without rounding.
 //
 // Coordinates are integers of 22 bits. Differences then have 23 bits with sign, the orientation determinant at most
-// 6 * 2^66 and the in-sphere determinant less than 2^122, so 128-bit integers hold every intermediate result: no floating-point
-// filter, no expansions, no perturbation.
+// 6 * 2^66 and the in-sphere determinant less than 2^122, so 128-bit integers hold every intermediate result: no
+// floating-point filter, no expansions, no perturbation.
 #pragma once
 
 #include <cstdint>

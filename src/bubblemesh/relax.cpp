@@ -20,7 +20,7 @@ namespace crumble {
 namespace {
 
 constexpr double kReach = 1.5;        // of the force, in l0
-constexpr double kSkin = 0.3;         // of the neighbour lists beyond it, in l0
+constexpr double kSkin = 0.4;         // of the neighbour lists beyond it, in l0
 constexpr double kMemory = 0.7;       // of the velocity
 constexpr double kGain = 0.12;        // of the force, in l0
 constexpr double kLongestStep = 0.1;  // in l0
@@ -35,7 +35,7 @@ class NeighbourLists {
  public:
   NeighbourLists(const Cloud& cloud, std::size_t end, const std::vector<std::uint32_t>& active, double radius,
                  const Vec3& lower, const Vec3& upper) {
-    NeighbourGrid grid(lower, upper, radius);
+    NeighbourGrid grid(lower, upper, radius / 2);
     for (std::size_t i = 0; i < end; ++i) grid.add(cloud.positions[i], static_cast<std::uint32_t>(i));
     starts_.reserve(active.size() + 1);
     starts_.push_back(0);
@@ -43,8 +43,8 @@ class NeighbourLists {
       const bool on_surface = cloud.kinds[i] == NodeKind::surface;
       grid.for_each_within(cloud.positions[i], radius, [&](std::uint32_t j, double) {
         if (j == i) return;
-        const bool hidden = on_surface && cloud.kinds[j] == NodeKind::surface &&
-                            dot(cloud.normals[i], cloud.normals[j]) < kSameSide;
+        const bool hidden =
+            on_surface && cloud.kinds[j] == NodeKind::surface && dot(cloud.normals[i], cloud.normals[j]) < kSameSide;
         if (!hidden) neighbours_.push_back(j);
       });
       starts_.push_back(neighbours_.size());
@@ -59,7 +59,8 @@ class NeighbourLists {
   std::vector<std::uint32_t> neighbours_;
 };
 
-Vec3 force_on(const Vec3& p, std::span<const std::uint32_t> neighbours, const std::vector<Vec3>& positions, double rest) {
+Vec3 force_on(const Vec3& p, std::span<const std::uint32_t> neighbours, const std::vector<Vec3>& positions,
+              double rest) {
   Vec3 force = Vec3::Zero();
   const double reach2 = kReach * kReach * rest * rest;
   for (const std::uint32_t j : neighbours) {
@@ -109,7 +110,8 @@ void relax(const Shape& shape, double rest, int iterations, std::size_t end, con
 
 void relax_surface(const Shape& shape, double spacing, int iterations, Cloud& cloud) {
   std::vector<std::uint32_t> active;
-  for (std::size_t i = cloud.feature_count; i < cloud.surface_count; ++i) active.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = cloud.feature_count; i < cloud.surface_count; ++i)
+    active.push_back(static_cast<std::uint32_t>(i));
   const auto flatten = [&](std::uint32_t i, const Vec3& force) -> Vec3 {
     return force - dot(force, cloud.normals[i]) * cloud.normals[i];
   };

@@ -8,14 +8,15 @@ namespace crumble {
 namespace {
 
 // Four surface nodes that make a flat tetrahedron just under the surface belong to the surface.
-constexpr double kSkinDepth = 0.03;  // in units of d
+constexpr double kSkinDepth = 0.1;  // in units of d
 constexpr double kFlat = 0.25;       // volume-length measure
 
 bool fills(const Shape& shape, double spacing, const Cloud& cloud, const Tetrahedron& t) {
   const auto on_surface = [&](std::uint32_t v) { return cloud.kinds[v] != NodeKind::inside; };
   const auto count = std::ranges::count_if(t, on_surface);
   if (count < 3) return true;
-  const Vec3 &a = cloud.positions[t[0]], &b = cloud.positions[t[1]], &c = cloud.positions[t[2]], &d = cloud.positions[t[3]];
+  const Vec3 &a = cloud.positions[t[0]], &b = cloud.positions[t[1]], &c = cloud.positions[t[2]],
+             &d = cloud.positions[t[3]];
   const double distance = shape.signed_distance(0.25 * ((a + b) + (c + d)));
   if (count == 3) return distance <= 0;
   const double quality = volume_length(a, b, c, d);

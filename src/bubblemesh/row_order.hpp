@@ -8,7 +8,8 @@ namespace crumble {
 
 /// Sorts the nodes by layer, row and place of the lattice (by where they are now, so nodes off the lattice join
 /// the nearest row) and the tetrahedra by their nodes: least node first, then the others ascending but for the
-/// last two, whose order carries the orientation. In the bulk, neighbours in a direction then stand at constant offsets.
+/// last two, whose order carries the orientation. In the bulk, neighbours in a direction then stand at constant
+/// offsets.
 void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetrahedron>& tetrahedra);
 
 }  // namespace crumble

@@ -8,9 +8,9 @@
 namespace crumble {
 namespace {
 
-constexpr double kWidestSearch = 0.12;    // in units of d; small against any wall, so project() cannot jump through it
+constexpr double kWidestSearch = 0.12;  // in units of d; small against any wall, so project() cannot jump through it
 constexpr double kFinestSearch = 0.0075;
-constexpr double kSameSurface = 0.82;     // cosine between the normals before and after a move
+constexpr double kSameSurface = 0.82;  // cosine between the normals before and after a move
 
 const std::array<Vec3, 14>& directions() {
   static const std::array<Vec3, 14> kDirections = [] {
@@ -91,7 +91,8 @@ Vec3 face_centroid(const Cloud& cloud, const TetComplex& tets, std::uint32_t nod
 
 /// Worst quality in the star; stops as soon as it is not above `floor`. `star` has the tetrahedron first that is worst
 /// at the node's old place: most tries end there.
-double worst_of(const Cloud& cloud, Measure measure, const TetComplex& tets, std::span<const TetId> star, double floor) {
+double worst_of(const Cloud& cloud, Measure measure, const TetComplex& tets, std::span<const TetId> star,
+                double floor) {
   double worst = std::numeric_limits<double>::infinity();
   for (const TetId t : star) {
     worst = std::min(worst, quality_of(cloud, measure, tets[t]));

@@ -115,7 +115,9 @@ void TetComplex::replace(std::span<const TetId> out, std::span<const Tetrahedron
   }
 }
 
-void TetComplex::begin_trial() { trial_ = Trial{{}, free_, tets_.size()}; }
+void TetComplex::begin_trial() {
+  trial_ = Trial{{}, free_, tets_.size()};
+}
 
 std::vector<TetId> TetComplex::new_in_trial() const {
   std::vector<TetId> result;
@@ -123,13 +125,14 @@ std::vector<TetId> TetComplex::new_in_trial() const {
     if (alive(change.slot)) result.push_back(change.slot);
   }
   std::ranges::sort(result);
-  result.erase(std::ranges::unique(result).begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 
 void TetComplex::undo_trial() {
   const Trial trial = *std::exchange(trial_, std::nullopt);
-  for (auto change = trial.changes.rbegin(); change != trial.changes.rend(); ++change) write(change->slot, change->before);
+  for (auto change = trial.changes.rbegin(); change != trial.changes.rend(); ++change)
+    write(change->slot, change->before);
   tets_.resize(trial.slots);
   free_ = trial.free;
 }

@@ -1,7 +1,8 @@
 // Tetrahedra that may be exchanged for others: for every node the list of those that hold it, nothing else.
 //
-// With about 24 tetrahedra at a node, a search through one list answers every question of topology (the ring of an edge, who shares a
-// face, whether an edge exists) in tens of nanoseconds, and there are no neighbour links to keep right.
+// With about 24 tetrahedra at a node, a search through one list answers every question of topology (the ring of an
+// edge, who shares a face, whether an edge exists) in tens of nanoseconds, and there are no neighbour links to keep
+// right.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +18,12 @@ namespace crumble {
 using TetId = std::uint32_t;
 inline constexpr TetId kNoTet = 0xffffffffu;
 
-inline bool holds(const Tetrahedron& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v || t[3] == v; }
+inline bool holds(const Tetrahedron& t, std::uint32_t v) {
+  return t[0] == v || t[1] == v || t[2] == v || t[3] == v;
+}
 
-/// Tetrahedra around an edge a-b in order: the k-th is (a, b, vertices[k], vertices[k + 1]), positive. `closed`: the last
-/// one ends at vertices[0]; otherwise the edge lies on the boundary and there is one vertex more than tetrahedra.
+/// Tetrahedra around an edge a-b in order: the k-th is (a, b, vertices[k], vertices[k + 1]), positive. `closed`: the
+/// last one ends at vertices[0]; otherwise the edge lies on the boundary and there is one vertex more than tetrahedra.
 struct Ring {
   static constexpr std::size_t kMost = 9;
   std::size_t size = 0;  // vertices; 0 when the ring has more than kMost or is broken

@@ -20,8 +20,8 @@ namespace crumble {
 enum class Lattice : std::uint8_t { hcp, fcc };
 
 struct BubbleMeshOptions {
-  double spacing = 0;          // distance wanted between neighbouring nodes = ball diameter d, metres
-  Vec3 offset = Vec3::Zero();  // of a lattice point from the centre of the body's bounding box, in units of d
+  double spacing = 0;          // distance wanted between neighbouring nodes = ball diameter d, metres, [1e-9, 1e9]
+  Vec3 offset = Vec3::Zero();  // of a lattice point from the centre of the bounding box, in units of d, within 1000
   Lattice lattice = Lattice::hcp;
   /// Exact numbers of nodes on the surface (corners and creases included) and inside: both or none. Each must lie
   /// within 0.6 to 1.5 times the number that comes out by itself.
@@ -29,9 +29,9 @@ struct BubbleMeshOptions {
 };
 
 struct BubbleMesh {
-  TetMesh mesh;              // nodes in lattice row order: by layer, row, place in the row; tetrahedra by least node
+  TetMesh mesh;  // nodes in lattice row order: by layer, row, place in the row; tetrahedra by least node
   MeshQuality quality;
-  double volume_error = 0;   // (volume of the tetrahedra - volume of the shape) / volume of the shape
+  double volume_error = 0;  // (volume of the tetrahedra - volume of the shape) / volume of the shape
   std::vector<std::string> warnings;
 };
 
