@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <vector>
 
 #include "crumble/base/error.hpp"
 
@@ -48,10 +48,15 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::commit() {
+  std::vector<std::filesystem::path> names;
+  for (const auto& file : std::filesystem::directory_iterator(temporary_)) names.push_back(file.path().filename());
   std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(temporary_)) {
-    std::filesystem::rename(file.path(), path_ / file.path().filename(), error);
-    if (error) fail(path_ / file.path().filename(), error.message());
+  for (const auto& name : names) {  // the one thing that stops a move within a folder which we have written to
+    if (std::filesystem::is_directory(path_ / name, error)) fail(path_ / name, "it is a folder");
+  }
+  for (const auto& name : names) {
+    std::filesystem::rename(temporary_ / name, path_ / name, error);
+    if (error) fail(path_ / name, error.message());
   }
   made_.clear();
 }

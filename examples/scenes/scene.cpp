@@ -24,23 +24,25 @@ BubbleMesh read_body(Fields body) {
   }
   std::unique_ptr<Shape> shape;
   if (body.has("box")) {
-    shape = make_box(body.vector("box"));
+    shape = make_box(body.sizes("box"));
   } else if (body.has("sphere")) {
-    shape = make_sphere(body.object("sphere").number("radius"));
+    Fields sphere = body.object("sphere");
+    shape = make_sphere(sphere.positive("radius"));
+    sphere.finish();
   } else if (body.has("cylinder")) {
     Fields cylinder = body.object("cylinder");
-    shape = make_cylinder(cylinder.number("radius"), cylinder.number("height"));
+    shape = make_cylinder(cylinder.positive("radius"), cylinder.positive("height"));
     cylinder.finish();
   } else {
     Fields::fail(body.name("paper"), "is missing, and so are box, sphere and cylinder: a body needs one of them");
   }
   BubbleMeshOptions options;
-  options.spacing = body.number("spacing");
+  options.spacing = body.positive("spacing");
   options.offset = body.vector("offset", options.offset);
   if (body.has("surface_nodes")) options.surface_nodes = body.count("surface_nodes");
   if (body.has("inside_nodes")) options.inside_nodes = body.count("inside_nodes");
   body.finish();
-  return generate(*shape, options);
+  return body.build([&] { return generate(*shape, options); });
 }
 
 Material read_material(Fields fields) {
@@ -56,11 +58,12 @@ Material read_material(Fields fields) {
 Friction read_friction(Fields fields) {
   const Friction friction{fields.number("static"), fields.number("dynamic")};
   fields.finish();
+  fields.build([&] { check(friction); });
   return friction;
 }
 
 Wall read_wall(Fields fields) {
-  Wall wall{{normalized(fields.vector("normal")), fields.number("offset")}, {}};
+  Wall wall{{fields.direction("normal"), fields.number("offset")}, {}};
   if (fields.has("friction")) wall.friction = read_friction(fields.object("friction"));
   fields.finish();
   return wall;
@@ -70,11 +73,14 @@ Tool read_tool(Fields fields) {
   Tool tool;
   if (fields.has("round_stick")) {
     Fields stick = fields.object("round_stick");
-    const double radius = stick.number("diameter") / 2, length = stick.number("length");
-    tool.shape = make_round_stick(radius, length, stick.has("sides") ? stick.count("sides") : 16);
+    const double radius = stick.positive("diameter") / 2, length = stick.positive("length");
+    const std::uint32_t sides = stick.has("sides") ? stick.count("sides") : 16;
     stick.finish();
+    tool.shape = stick.build([&] { return make_round_stick(radius, length, sides); });
+  } else if (fields.has("bar")) {
+    tool.shape = make_bar(fields.sizes("bar"));
   } else {
-    tool.shape = make_bar(fields.vector("bar"));
+    Fields::fail(fields.name("round_stick"), "is missing, and so is bar: a tool needs one of them");
   }
   if (fields.has("friction")) tool.friction = read_friction(fields.object("friction"));
   fields.finish();
@@ -82,8 +88,10 @@ Tool read_tool(Fields fields) {
 }
 
 Quat read_turn(Fields& fields, const char* axis, const char* degrees) {
-  if (!fields.has(axis)) return Quat::Identity();
-  return axis_angle(normalized(fields.vector(axis)), fields.number(degrees) * kPi / 180);
+  if (!fields.has(axis) && !fields.has(degrees)) return Quat::Identity();
+  const double angle = fields.number(degrees);
+  require_in_range(fields.name(degrees), angle, -360, 360);
+  return axis_angle(fields.direction(axis), angle * kPi / 180);
 }
 
 double lowest(const ConvexPolyhedron& shape, const Quat& orientation) {
@@ -109,7 +117,7 @@ WorkspaceOptions read_workspace(Fields fields) {
   workspace.pose.position = fields.vector("position");
   workspace.pose.orientation = read_turn(fields, "axis", "degrees");
   workspace.mount = read_turn(fields, "mount_axis", "mount_degrees");
-  workspace.scale = fields.number("scale", 1);
+  workspace.scale = fields.positive("scale", 1);
   workspace.force_gain = fields.number("force_gain", 1);
   fields.finish();
   return workspace;
@@ -118,19 +126,23 @@ WorkspaceOptions read_workspace(Fields fields) {
 void read_motion(Fields fields, const std::filesystem::path& folder, Scene& scene) {
   if (fields.has("press")) {
     Fields press = fields.object("press");
-    scene.press.speed = press.number("speed", scene.press.speed);
-    scene.press.depth = press.number("depth");
+    scene.press.speed = press.positive("speed", scene.press.speed);
+    scene.press.depth = press.positive("depth");
     press.finish();
   }
   if (fields.has("replay")) {
     Fields replay = fields.object("replay");
     const std::string file = replay.text("file");
-    const bool beside = !folder.empty() && std::filesystem::exists(folder / file);
-    scene.trajectory = load_trajectory(beside ? (folder / file).string() : file);
+    std::error_code none;
+    const bool beside = !folder.empty() && std::filesystem::exists(folder / file, none);
+    scene.trajectory = replay.build([&] { return load_trajectory(beside ? (folder / file).string() : file); });
     if (replay.has("from")) scene.replay.from = replay.number("from");
     if (replay.has("to")) scene.replay.to = replay.number("to");
     scene.workspace = read_workspace(replay.object("workspace"));
     replay.finish();
+  }
+  if (!fields.has("press") && !fields.has("replay")) {
+    Fields::fail(fields.name("press"), "is missing, and so is replay: a motion needs one of them");
   }
   fields.finish();
 }
@@ -148,19 +160,26 @@ Scene read_scene(Fields fields, const std::filesystem::path& folder, Preset pres
   scene.def.gravity = fields.vector("gravity", scene.def.gravity);
   if (fields.has("walls")) {
     scene.def.walls.clear();
-    const nlohmann::json& walls = fields.at("walls");
-    for (std::size_t i = 0; i < walls.size(); ++i)
-      scene.def.walls.push_back(read_wall({walls[i], "walls[" + std::to_string(i) + "]"}));
+    for (Fields& wall : fields.objects("walls")) scene.def.walls.push_back(read_wall(std::move(wall)));
   }
   scene.def.tools.push_back(read_tool(fields.object("tool")));
   if (preset == Preset::paper) apply_paper_preset(scene.def);
   scene.start = read_start(fields.object("start"), scene);
   scene.press.start = scene.start;
-  scene.workspace.pose.position = scene.start.position;
-  scene.workspace.mount = scene.start.orientation;
   read_motion(fields.object("motion"), folder, scene);
   fields.finish();
   return scene;
+}
+
+std::string read_scene_file(const std::string& name) {
+  try {
+    return read_text(name);
+  } catch (const Error& error) {
+    std::string list;
+    for (const std::string& each : scene_names()) list += " " + each;
+    throw Error(error.code(),
+                "scene '" + name + "' is not one of the built-in scenes:" + list + "; and as a file: " + error.what());
+  }
 }
 
 }  // namespace
@@ -172,12 +191,7 @@ Trajectory load_trajectory(const std::string& name) {
 
 Scene load_scene(const std::string& name, Preset preset) {
   const auto built_in = embedded_file(name + ".json");
-  if (!built_in && !std::filesystem::exists(name)) {
-    std::string list;
-    for (const std::string& each : scene_names()) list += " " + each;
-    throw Error(Code::io, "scene '" + name + "' is neither a file nor one of the built-in scenes:" + list);
-  }
-  const std::string text = built_in ? std::string(*built_in) : read_text(name);
+  const std::string text = built_in ? std::string(*built_in) : read_scene_file(name);
   try {
     const nlohmann::json json = nlohmann::json::parse(text);
     const auto folder = built_in ? std::filesystem::path() : std::filesystem::absolute(name).parent_path();

@@ -24,14 +24,15 @@ struct Scene {
   std::vector<std::string> warnings;  // of the mesh generator
   Pose start;                         // of the tool
   PressOptions press;                 // from `start`; the device where the scene names no trajectory
-  WorkspaceOptions workspace;         // from a trajectory's frame to the scene; at `start` when the scene does not say
   std::optional<Trajectory> trajectory;
+  WorkspaceOptions workspace;  // from the trajectory's frame to the scene
   ReplayOptions replay;
   double top = 0;  // y of the highest node at rest, metres: where the tool's depth is 0
 };
 
 /// `name` is a built-in scene or the path of a JSON file. Throws Error: io, format (JSON, unknown key, missing key,
-/// wrong type; names the key by its path), and what the parts refuse.
+/// wrong type), out_of_range (a size that is not positive, ...) and what the parts refuse; the message names the key by
+/// its path. The material is checked where a Simulation is made of it.
 Scene load_scene(const std::string& name, Preset preset);
 
 /// A trajectory by built-in name ("press_1mm_s") or path of a .ctraj file.

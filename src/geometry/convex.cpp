@@ -16,11 +16,13 @@ std::string triangle_name(std::size_t t) {
   return "tool triangle " + std::to_string(t);
 }
 
-void check_triangles(const TriangleMesh& mesh, double size) {
+void check_vertices(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!is_finite(mesh.vertices[v]))
-      throw Error(Code::invalid_value, "tool vertex " + std::to_string(v) + " is not finite");
+    if (!is_finite(mesh.vertices[v])) throw Error(Code::mesh, "tool vertex " + std::to_string(v) + " is not finite");
   }
+}
+
+void check_triangles(const TriangleMesh& mesh, double size) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) {
       if (v >= mesh.vertices.size()) {
@@ -116,13 +118,10 @@ SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p) {
 
 ConvexPolyhedron make_convex(const TriangleMesh& mesh) {
   if (mesh.triangles.size() < 4 || mesh.vertices.size() < 4) {
-    throw Error(Code::empty,
+    throw Error(Code::mesh,
                 "tool mesh has " + std::to_string(mesh.triangles.size()) + " triangles, at least 4 are needed");
   }
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!is_finite(mesh.vertices[v]))
-      throw Error(Code::invalid_value, "tool vertex " + std::to_string(v) + " is not finite");
-  }
+  check_vertices(mesh);
   const double size = extent(mesh);
   check_triangles(mesh, size);
   check_closed(mesh);

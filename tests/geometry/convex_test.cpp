@@ -43,10 +43,10 @@ TEST(Convex, RefusesBadMeshesByName) {
     return Code{0};
   };
   EXPECT_EQ(code_of([](auto&) {}), Code{0});
-  EXPECT_EQ(code_of([](auto& m) { m.triangles.clear(); }), Code::empty);
+  EXPECT_EQ(code_of([](auto& m) { m.triangles.clear(); }), Code::mesh);
   EXPECT_EQ(code_of([](auto& m) { m.triangles.pop_back(); }), Code::mesh_open);
   EXPECT_EQ(code_of([](auto& m) { m.triangles[3][1] = 99; }), Code::mesh);
-  EXPECT_EQ(code_of([](auto& m) { m.vertices[2].y() = std::nan(""); }), Code::invalid_value);
+  EXPECT_EQ(code_of([](auto& m) { m.vertices[2].y() = std::nan(""); }), Code::mesh);
   EXPECT_EQ(code_of([](auto& m) { m.vertices[1] = m.vertices[0]; }), Code::mesh);
   EXPECT_EQ(code_of([](auto& m) { std::swap(m.triangles[0][0], m.triangles[0][1]); }), Code::mesh_orientation);
   EXPECT_EQ(code_of([](auto& m) {

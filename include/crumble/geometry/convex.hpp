@@ -41,8 +41,8 @@ SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p);
 ConvexPolyhedron make_round_stick(double radius, double length, std::uint32_t sides);
 /// Bar with edges x, y, z about the origin.
 ConvexPolyhedron make_bar(const Vec3& size);
-/// From a closed triangle mesh. Throws Error: empty, mesh (index, non-finite, degenerate), mesh_open,
-/// mesh_orientation, mesh_nonconvex; the message names the first bad index.
+/// From a closed triangle mesh. Throws Error: mesh (fewer than 4 triangles or vertices, index, non-finite, degenerate),
+/// mesh_open, mesh_orientation, mesh_nonconvex; the message names the first bad index.
 ConvexPolyhedron make_convex(const TriangleMesh& mesh);
 
 }  // namespace crumble

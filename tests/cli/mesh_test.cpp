@@ -1,0 +1,66 @@
+// `crumble mesh`.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/ply.hpp"
+#include "crumble/base/file.hpp"
+#include "render/temporary_folder.hpp"
+
+namespace crumble::cli {
+namespace {
+
+using nlohmann::json;
+using render::TemporaryFolder;
+
+json mesh_json(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "mesh");
+  arguments.push_back("--json");
+  const Outcome outcome = crumble(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return json::parse(outcome.out);
+}
+
+TEST(Mesh, PrintsOneJsonObject) {
+  const json cube = mesh_json({"cube"});
+  EXPECT_EQ(cube.at("nodes"), 600);
+  EXPECT_EQ(cube.at("surface_nodes"), 306);
+  EXPECT_EQ(cube.at("boundary_defects"), 0);
+  EXPECT_EQ(cube.at("euler_defect"), 0);
+  EXPECT_EQ(cube.at("slivers"), 0);
+  EXPECT_NEAR(cube.at("volume_m3").get<double>(), 27e-6, 1e-12);
+  EXPECT_GT(cube.at("dihedral_min_degrees"), 10);
+  EXPECT_LT(cube.at("dihedral_max_degrees"), 170);
+  EXPECT_NEAR(cube.at("edge_mean_m").get<double>(), 0.0044, 0.0006);
+  EXPECT_TRUE(cube.at("warnings").is_array());
+}
+
+TEST(Mesh, MakesEveryShape) {
+  EXPECT_EQ(mesh_json({"slab"}).at("nodes"), 382 + 314);
+  EXPECT_EQ(mesh_json({"globe"}).at("surface_nodes"), 305);
+  EXPECT_EQ(mesh_json({"globe_literal"}).at("surface_nodes"), 370);
+  const double pi = 3.14159265358979;
+  const json box = mesh_json({"box", "0.02", "0.03", "0.04", "--spacing", "0.006", "--lattice", "fcc"});
+  EXPECT_NEAR(box.at("volume_m3").get<double>(), 24e-6, 1e-12);
+  const json sphere = mesh_json({"sphere", "0.02", "--spacing", "0.005", "--offset", "0.1", "0.2", "0.3"});
+  EXPECT_NEAR(sphere.at("volume_m3").get<double>(), 4 * pi / 3 * 8e-6, 3e-6);
+  const json cylinder = mesh_json({"cylinder", "0.02", "0.03", "--spacing", "0.005"});
+  EXPECT_NEAR(cylinder.at("volume_m3").get<double>(), pi * 4e-4 * 0.03, 3e-6);
+}
+
+TEST(Mesh, WritesMeshAndSurface) {
+  const TemporaryFolder folder;
+  const json cube = mesh_json({"cube", "--out", folder.file("cube.vtk").string()});
+  const std::string vtk = read_text(folder.file("cube.vtk"));
+  EXPECT_NE(vtk.find("POINTS 600 double"), std::string::npos);
+  EXPECT_NE(vtk.find("CELLS " + cube.at("tetrahedra").dump()), std::string::npos);
+  mesh_json({"cube", "--out", folder.file("cube.ply").string()});
+  const PlyFile surface = read_ply(folder.file("cube.ply"));
+  EXPECT_EQ(surface.unmatched_edges, 0u);
+  EXPECT_EQ(surface.triangles, 2 * (306u - 2));
+  EXPECT_NEAR(surface.volume, 27e-6, 1e-10);
+}
+
+}  // namespace
+}  // namespace crumble::cli
