@@ -52,8 +52,8 @@ TEST_P(PaperBodies, HaveTheirGoldenHash) {
 INSTANTIATE_TEST_SUITE_P(All, PaperBodies,
                          testing::Values(Expected{PaperBody::cube, 0.12, 0.02, 0xf65bac874bfca4bd},
                                          Expected{PaperBody::slab, 0.12, 0.02, 0x34809237d1366fde},
-                                         Expected{PaperBody::globe, 0.12, 0.02, 0xaf0f64fb582c4716},
-                                         Expected{PaperBody::globe_literal, 0.16, 0.06, 0xb07224ced6ffe26e}),
+                                         Expected{PaperBody::globe, 0.12, 0.02, 0x0b2467440b2b033a},
+                                         Expected{PaperBody::globe_literal, 0.16, 0.06, 0x5bd80361c19fa8be}),
                          [](const auto& suite) { return std::string(paper_body_facts(suite.param.body).name); });
 
 TEST(PaperBodiesUnforced, ComeNearThePaperByThemselves) {

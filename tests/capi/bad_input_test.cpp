@@ -1,7 +1,8 @@
 // The bad-input catalogue of the set-up calls: which code, which field in the text, and nothing made or changed.
-#include <filesystem>
+#include <sys/resource.h>
 
 #include "capi/rig.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace crumble {
 namespace {
@@ -152,6 +153,24 @@ TEST_F(BadInput, BodiesOfTetrahedra) {
   EXPECT_RESULT(CRUMBLE_E_TOO_LARGE, crumble_mesh_create_from_tets(p, 0x80000000u, t, 6, &made));
   EXPECT_RESULT(CRUMBLE_E_TOO_LARGE, crumble_mesh_create_from_tets(p, 8, t, 0xffffffffu, &made));
   EXPECT_EQ(made, nullptr);
+}
+
+// In a process of its own that may take little more memory than it has.
+TEST_F(BadInput, MoreThanMemory) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "a sanitizer needs the address space for itself";
+  const std::vector<double> many(3 * 4'000'000);  // 96 MB, copied by the call
+  const auto run_short = [&] {
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = 180u << 20;
+    setrlimit(RLIMIT_AS, &limit);
+    crumble_mesh made = nullptr;
+    const crumble_result result =
+        crumble_mesh_create_from_tets(many.data(), 4'000'000, cube.tetrahedra.data(), 1, &made);
+    const bool usable = cube.create(&made) == CRUMBLE_OK && crumble_mesh_destroy(made) == CRUMBLE_OK;
+    std::exit(result == CRUMBLE_E_NO_MEMORY && usable ? 0 : 1);
+  };
+  EXPECT_EXIT(run_short(), testing::ExitedWithCode(0), "");
 }
 
 TEST_F(BadInput, Tools) {

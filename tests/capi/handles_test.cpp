@@ -1,8 +1,6 @@
 // Handles: the table itself with small numbers, then every misuse of the API's handles.
 #include "handles.hpp"
 
-#include <thread>
-
 #include "capi/rig.hpp"
 #include "crumble/base/random.hpp"
 
@@ -178,25 +176,6 @@ TEST_F(Handles, AMeshMayGoBeforeItsSimulation) {
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_step_tools(made, nullptr, nullptr, 0));
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_extract_surface(made, nullptr));
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_destroy(made));
-}
-
-TEST(Threads, ManyMakeAndDestroyAtOnce) {
-  const Cube cube(1);
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([&] {
-      for (int i = 0; i < 200; ++i) {
-        crumble_mesh mesh = nullptr;
-        crumble_sim sim = nullptr;
-        ASSERT_OK(cube.create(&mesh));
-        ASSERT_OK(crumble_sim_create(mesh, nullptr, &sim));
-        ASSERT_OK(crumble_sim_step_tools(sim, nullptr, nullptr, 0));
-        ASSERT_OK(crumble_sim_destroy(sim));
-        ASSERT_OK(crumble_mesh_destroy(mesh));
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Steps through C: the numbers of the C++ API, and what a servo loop may rely on.
-#include <atomic>
 #include <cstring>
-#include <thread>
 
 #include "capi/c_client.h"
 #include "capi/rig.hpp"
@@ -284,44 +282,6 @@ TEST_F(Step, WallsAndGravityAct) {
   def.floor = 0;
   ASSERT_OK(crumble_sim_configure(sim, &def));  // ... which stays when it goes
   EXPECT_NEAR(lowest_after(50), 5e-4, 1e-9);
-}
-
-TEST(Threads, TheSecondInAnObjectIsTurnedAway) {
-  const Cube cube(10);
-  crumble_mesh mesh = nullptr;
-  crumble_sim sim = nullptr;
-  ASSERT_OK(cube.create(&mesh));
-  ASSERT_OK(crumble_sim_create(mesh, nullptr, &sim));
-  std::atomic<bool> stop = false;
-  std::thread first([&] {
-    while (!stop) crumble_sim_fix_below(sim, 0);  // takes milliseconds each time
-  });
-  crumble_counters counters{};
-  counters.struct_size = sizeof counters;
-  crumble_result result = CRUMBLE_OK;
-  for (int i = 0; i < 50'000'000 && result == CRUMBLE_OK; ++i) result = crumble_sim_get_counters(sim, &counters);
-  expect_failure(CRUMBLE_E_BUSY, result, {"crumble_sim_get_counters", "another thread"});
-  stop = true;
-  first.join();
-  EXPECT_RESULT(CRUMBLE_OK, crumble_sim_destroy(sim));
-  EXPECT_RESULT(CRUMBLE_OK, crumble_mesh_destroy(mesh));
-}
-
-TEST_F(Step, ErrorTextsBelongToTheirThread) {
-  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_state_hash(sim, nullptr));
-  const std::string here = crumble_last_error();
-  EXPECT_EQ(here, "crumble_sim_state_hash: hash must not be NULL");
-  std::string before, after;
-  std::thread([&] {
-    before = crumble_last_error();
-    crumble_sim_reset(nullptr);
-    after = crumble_last_error();
-  }).join();
-  EXPECT_EQ(before, "");
-  EXPECT_EQ(after, "crumble_sim_reset: sim must not be NULL");
-  EXPECT_EQ(crumble_last_error(), here);
-  ASSERT_OK(crumble_sim_reset(sim));
-  EXPECT_EQ(crumble_last_error(), here) << "success leaves the text";
 }
 
 }  // namespace

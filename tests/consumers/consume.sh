@@ -14,7 +14,7 @@ here=$CRUMBLE/tests/consumers
 build_and_run() { # project directory, CMake arguments
   project=$1
   shift
-  rm -rf "$work/$case_name"
+  rm -rf "${work:?}/$case_name"
   "$CMAKE" -S "$here/$project" -B "$work/$case_name" -G "$GENERATOR" -DCMAKE_BUILD_TYPE="$BUILD_TYPE" -DEXAMPLES="$examples" \
     -DCMAKE_C_COMPILER="$CC" -DCMAKE_CXX_COMPILER="$CXX" "$@"
   "$CMAKE" --build "$work/$case_name" --target break_tofu

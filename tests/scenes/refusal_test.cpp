@@ -88,6 +88,13 @@ TEST(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.press.depth, 0.01);
 }
 
+TEST(SceneFile, OfTheManualLoads) {
+  const std::string manual = read_text(CRUMBLE_SOURCE_DIR "/docs/scenes.md"), fence = "```json\n";
+  const std::size_t begin = manual.find(fence) + fence.size();
+  const Outcome outcome = load(manual.substr(begin, manual.find("```", begin) - begin));
+  EXPECT_EQ(outcome.code, Code{}) << outcome.message;
+}
+
 TEST(SceneFile, FindsATrajectoryBesideIt) {
   const TemporaryFolder folder;
   json scene = kGood;
