@@ -32,7 +32,8 @@ struct Sim {
   /// Fragment of each node now.
   const FragmentLabeler& fragments() noexcept;
 
-  std::shared_ptr<const TetMesh> mesh;  // at rest; borrowed by labeler and surface, which the simulation must not move
+  // At rest. Labeler and surface borrow it: the simulation's own copy moves whenever it is restored or rebuilt.
+  std::shared_ptr<const TetMesh> mesh;
   Simulation simulation;
   bool has_floor = false;   // the first wall
   std::vector<Pose> poses;  // per tool; room for the step

@@ -11,7 +11,7 @@ using capi::HandleLayout;
 using capi::HandleTable;
 
 TEST(HandleTable, NeverGivesAHandleTwiceAndLeavesWornSlots) {
-  HandleTable table(5, HandleLayout{1, 2, 6});  // 2 slots of 3 generations
+  static constinit HandleTable table(5, HandleLayout{1, 2, 6});  // 2 slots of 3 generations
   int object = 0;
   void* found = nullptr;
   std::vector<void*> given;
@@ -34,7 +34,7 @@ TEST(HandleTable, NeverGivesAHandleTwiceAndLeavesWornSlots) {
 }
 
 TEST(HandleTable, WorksWithTheBitsOf32BitHosts) {
-  HandleTable table(2, HandleLayout{12, 14, 6});
+  static constinit HandleTable table(2, HandleLayout{12, 14, 6});
   std::vector<int> objects(4096);
   std::vector<void*> handles;
   for (int& object : objects) handles.push_back(table.insert(&object));
@@ -49,7 +49,7 @@ TEST(HandleTable, WorksWithTheBitsOf32BitHosts) {
 }
 
 TEST(HandleTable, HoldsAnObjectForOneCallerAtATime) {
-  HandleTable table(1);
+  static constinit HandleTable table(1);
   int object = 0;
   void *const handle = table.insert(&object), *found = nullptr;
   ASSERT_OK(table.acquire(handle, found));
