@@ -6,7 +6,7 @@ build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev nlohmann-json3-de
   libepoxy-dev libegl1 libgl1-mesa-dri libstb-dev libtinygltf-dev gnuplot-nox)
 # Beside these: test and benchmark frameworks, libraries that results are compared with, a second compiler and its
 # formatter.
-test_packages=(libgtest-dev libbenchmark-dev libccd-dev libfcl-dev libassimp-dev clang clang-format)
+test_packages=(ccache libgtest-dev libbenchmark-dev libccd-dev libfcl-dev libassimp-dev clang clang-format)
 lint_packages=(clang-tidy)
 
 # What a system without apt-get has to provide. Ends the script.

@@ -57,7 +57,7 @@ bool fill_gaps(const Shape& shape, double spacing, double gap, NodeKind kind, co
   return changed;
 }
 
-/// Points of a lattice twice as fine, at depths [least, greatest] d.
+/// Points of a lattice `fineness` times as fine, at depths [least, greatest] d.
 template <class Visit>
 void for_each_fine_point(const Shape& shape, double spacing, double fineness, double least, double greatest,
                          Visit visit) {
@@ -69,6 +69,7 @@ void for_each_fine_point(const Shape& shape, double spacing, double fineness, do
   });
 }
 
+// Finer than inside: next to the small cap of a thin cylinder half a spacing was too coarse to hit the gap.
 std::vector<SurfacePoint> surface_places(const Shape& shape, double spacing) {
   std::vector<SurfacePoint> places;
   for_each_fine_point(shape, spacing, 3, -0.3, 0.3, [&](const Vec3& p) { places.push_back(shape.project(p)); });

@@ -39,9 +39,9 @@ BubbleMeshOptions paper_options(PaperBody body) {
       case PaperBody::slab:
         return {0.2, 0.85, 0.7};
       case PaperBody::globe:
-        return {0.525, 0.75, 0.925};
+        return {0.575, 0.975, 0.725};
       default:
-        return {0.45, 0.875, 0.7};
+        return {0.625, 0.825, 0.275};
     }
   };
   const PaperBodyFacts facts = paper_body_facts(body);

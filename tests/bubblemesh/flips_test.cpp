@@ -124,15 +124,17 @@ TEST(Flips, CreaseStaysAndFlatTetrahedronIsTakenOff) {
   for (const Vec3& p : {Vec3(0, 0, -3), Vec3(0, 0, 3), Vec3(1, 0, 0), Vec3(0.7, 0.7, 0), Vec3(0, 1, 0)})
     corner.add(p, NodeKind::crease);
   TetComplex tets(5, {{0, 1, 2, 3}, {0, 1, 3, 4}});
-  EXPECT_FALSE(remove_edge(corner, least_sine, 0, 1, tets));
+  const double any = -std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(remove_edge(corner, least_sine, 0, 1, tets, any));
   // a flat tetrahedron 0 1 2 3 on top of two that fill the space under it
   Cloud top;
   for (const Vec3& p : {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 1, 0), Vec3(0, 0, -1)})
     top.add(p, NodeKind::surface);
-  TetComplex flat(5, {{0, 1, 2, 3}, {2, 3, 0, 4}, {3, 2, 1, 4}});
+  TetComplex flat(5, {{0, 1, 2, 3}, {3, 2, 0, 4}, {2, 3, 1, 4}});
   ASSERT_EQ(flat.ring(0, 1).tet_count(), 1u);
-  const bool closed = flat.ring(2, 3).closed;
-  EXPECT_EQ(remove_edge(top, least_sine, 0, 1, flat), closed);
+  ASSERT_TRUE(flat.ring(2, 3).closed);
+  EXPECT_TRUE(remove_edge(top, least_sine, 0, 1, flat));
+  EXPECT_EQ(as_sets(flat.tetrahedra()), (std::set<std::set<std::uint32_t>>{{0, 2, 3, 4}, {1, 2, 3, 4}}));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace crumble {
 
 enum class PaperBody : std::uint8_t {
   cube,           // §2.2, §3.2: 30 x 30 x 30 mm, balls of 2.2 mm radius, 306 nodes on the surface + 294 inside
-  slab,           // §3.4: 30 x 30 mm and 10 mm high, balls of 1.5 mm radius, 382 + 314
-  globe,          // §3.4: radius 20 mm, balls of 2.2 mm radius, 305 + 370; the paper's two numbers read as swapped
+  slab,           // §3.3: 30 x 30 mm and 10 mm high, balls of 1.5 mm radius, 382 + 314
+  globe,          // §3.3: radius 20 mm, balls of 2.2 mm radius, 305 + 370; the paper's two numbers read as swapped
   globe_literal,  // the same with 370 + 305, as printed
 };
 
