@@ -17,8 +17,9 @@ template <class Bytes>
 Bytes read_whole(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (std::filesystem::is_directory(path)) errno = EISDIR;
-  if (!file || errno == EISDIR) fail("cannot read", path);
+  if (!file) fail("cannot read", path);
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) errno = EISDIR, fail("cannot read", path);
   const std::streamoff size = file.tellg();
   if (size < 0) fail("cannot read", path);  // a pipe has no size
   Bytes bytes(static_cast<std::size_t>(size), {});
