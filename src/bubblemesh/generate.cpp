@@ -8,6 +8,7 @@
 #include "bubblemesh/features.hpp"
 #include "bubblemesh/improve.hpp"
 #include "bubblemesh/lattice.hpp"
+#include "bubblemesh/lattice_cut.hpp"
 #include "bubblemesh/populate.hpp"
 #include "bubblemesh/relax.hpp"
 #include "bubblemesh/repair.hpp"
@@ -24,6 +25,9 @@ constexpr double kFinestSpacing = 1e-9,
                  kCoarsestSpacing = 1e9;  // metres; cubes of them are far from under- and overflow
 constexpr double kFarthestOffset = 1000;  // in spacings; the lattice repeats after a few
 constexpr double kLeastThickness = 1.25;  // in spacings; random thinner spheres failed, 2000 of this thickness did not
+constexpr double kLeastLatticeThickness = 2;
+constexpr double kOnSurface = 1e-9;  // of the body's extent
+constexpr double kMuchVolume = 0.1;  // of the body's: a mesh that lacks more is worth a warning
 constexpr int kRepairRounds = 6;
 constexpr int kRepairIterations = 30;
 
@@ -42,7 +46,11 @@ void check_options(const Shape& shape, const BubbleMeshOptions& options) {
   if (options.surface_nodes.has_value() != options.inside_nodes.has_value()) {
     throw Error(Code::invalid_value, "surface_nodes and inside_nodes must be given together");
   }
-  const double greatest = largest_spacing(shape);
+  if (options.structure == Structure::lattice && options.surface_nodes) {
+    throw Error(Code::unsupported,
+                "surface_nodes and inside_nodes cannot be chosen with structure lattice: its nodes come by themselves");
+  }
+  const double greatest = largest_spacing(shape, options.structure);
   if (options.spacing > greatest) {
     throw Error(Code::too_coarse, "spacing " + to_text(options.spacing) +
                                       " m is too coarse for this body: it may be at most " + to_text(greatest) + " m");
@@ -119,33 +127,61 @@ Draft make_draft(const Shape& shape, const BubbleMeshOptions& options, const Lat
   fail("nodes and sharp edges do not find their places");
 }
 
-}  // namespace
-
-double largest_spacing(const Shape& shape) {
-  return shape.least_thickness() / kLeastThickness;
+/// Mesh, quality and what the caller has to know.
+BubbleMesh finish(const Shape& shape, double spacing, Cloud cloud, std::vector<Tetrahedron> tetrahedra) {
+  BubbleMesh result;
+  result.mesh = make_tet_mesh(std::move(cloud.positions), std::move(tetrahedra), std::move(cloud.kinds));
+  result.quality = measure_quality(result.mesh);
+  require_valid(result.mesh, result.quality);
+  const double meshed = volume(TriangleMesh{result.mesh.positions, result.mesh.boundary});
+  result.volume_error = (meshed - shape.volume()) / shape.volume();
+  if (shape.least_thickness() < 2 * spacing) {
+    result.warnings.push_back("the body is thinner than two spacings: " + to_text(shape.least_thickness()) + " m at " +
+                              to_text(spacing) + " m");
+  } else if (result.volume_error < -kMuchVolume) {
+    result.warnings.push_back("the spacing is coarse for so round a body: the mesh lacks " +
+                              to_text(std::floor(-100 * result.volume_error + 0.5)) + " % of its volume");
+  }
+  return result;
 }
 
-BubbleMesh generate(const Shape& shape, const BubbleMeshOptions& options) {
-  check_options(shape, options);
+BubbleMesh generate_relaxed(const Shape& shape, const BubbleMeshOptions& options) {
   const LatticeFrame frame(options.lattice, lattice_origin(shape, options), options.spacing);
   Draft draft = make_draft(shape, options, frame);
   improve(shape, options.spacing, draft.cloud, draft.tetrahedra);
   const bool creases_kept = find_flaws(draft.cloud, draft.crease_edges, draft.tetrahedra).broken_creases.empty();
   put_in_row_order(frame, draft.cloud, draft.tetrahedra);
-
-  BubbleMesh result;
-  result.mesh =
-      make_tet_mesh(std::move(draft.cloud.positions), std::move(draft.tetrahedra), std::move(draft.cloud.kinds));
-  result.quality = measure_quality(result.mesh);
-  require_valid(result.mesh, result.quality);
+  BubbleMesh result = finish(shape, options.spacing, std::move(draft.cloud), std::move(draft.tetrahedra));
   if (!creases_kept) fail("a sharp edge of the body is missing");
-  const double meshed = volume(TriangleMesh{result.mesh.positions, result.mesh.boundary});
-  result.volume_error = (meshed - shape.volume()) / shape.volume();
-  if (shape.least_thickness() < 2 * options.spacing) {
-    result.warnings.push_back("the body is thinner than two spacings: " + to_text(shape.least_thickness()) + " m at " +
-                              to_text(options.spacing) + " m");
-  }
+  describe_rows(frame, result);
   return result;
+}
+
+BubbleMesh generate_lattice(const Shape& shape, const BubbleMeshOptions& options) {
+  const LatticeBody body(shape, options.spacing, options.offset);
+  LatticeCut cut = cut_lattice(body, options.spacing);
+  sort_tetrahedra(cut.tetrahedra);
+  BubbleMesh result = finish(shape, options.spacing, std::move(cut.cloud), std::move(cut.tetrahedra));
+  const double tolerance = kOnSurface * norm(shape.upper() - shape.lower());
+  for (std::size_t i = 0; i < result.mesh.node_count(); ++i) {
+    const double distance = shape.signed_distance(result.mesh.positions[i]);
+    const bool on_surface = result.mesh.kinds[i] != NodeKind::inside;
+    if (on_surface ? std::abs(distance) > tolerance : distance > -tolerance)
+      fail("node " + std::to_string(i) + " is not where the surface has it");
+  }
+  describe_rows(cut.sites, result);
+  return result;
+}
+
+}  // namespace
+
+double largest_spacing(const Shape& shape, Structure structure) {
+  return shape.least_thickness() / (structure == Structure::lattice ? kLeastLatticeThickness : kLeastThickness);
+}
+
+BubbleMesh generate(const Shape& shape, const BubbleMeshOptions& options) {
+  check_options(shape, options);
+  return options.structure == Structure::lattice ? generate_lattice(shape, options) : generate_relaxed(shape, options);
 }
 
 }  // namespace crumble

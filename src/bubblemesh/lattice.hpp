@@ -30,6 +30,18 @@ class LatticeFrame {
   std::int64_t nearest_row(const Vec3& p, std::int64_t layer) const {
     return rounded((p.z() - origin_.z()) / row_height() - static_cast<double>(letter_of(layer)) / 3);
   }
+  std::int64_t nearest_place(const Vec3& p, std::int64_t row, std::int64_t layer) const {
+    return rounded((p.x() - point(0, row, layer).x()) / spacing_);
+  }
+  /// Whether lattice points this far apart are nearest neighbours, or the ends of an octahedron's diagonal across the
+  /// rows (sqrt 2 d long, from layer to layer), along which all perfect octahedra are cut.
+  bool is_neighbour_step(const Vec3& step) const {
+    constexpr double kTolerance = 1e-3;
+    const double squares = squared_norm(step) / (spacing_ * spacing_);
+    if (std::abs(squares - 1) < kTolerance) return true;
+    const bool across = std::abs(step.x()) < kTolerance * spacing_ && std::abs(step.y()) > kTolerance * spacing_;
+    return across && std::abs(squares - 2) < kTolerance;
+  }
 
   /// visit(point) for every lattice point in the box, by layer, row, place.
   template <class Visit>

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 
@@ -27,16 +28,18 @@ constexpr double kLongestStep = 0.1;  // in l0
 constexpr double kStill = 2e-3;       // longest step at which all is at rest, in l0
 // Bubbles inside rest a little closer than d, which leaves fewer flat tetrahedra; on the surface at d.
 constexpr double kInsideRest = 0.97;
+// Deeper nodes, in d, are out of reach of all that are moved; those move by less than d / 2.
+constexpr double kFeltDepth = kRelaxedDepth + kReach + kSkin + 0.5;
 // Surface nodes on the far side of a thin wall or beyond a crease do not count.
 constexpr double kSameSide = 0.3;
 
-/// Neighbours of nodes [first, size), of those that `active` says.
+/// Neighbours of the active nodes among the present ones.
 class NeighbourLists {
  public:
-  NeighbourLists(const Cloud& cloud, std::size_t end, const std::vector<std::uint32_t>& active, double radius,
-                 const Vec3& lower, const Vec3& upper) {
+  NeighbourLists(const Cloud& cloud, std::span<const std::uint32_t> present, std::span<const std::uint32_t> active,
+                 double radius, const Vec3& lower, const Vec3& upper) {
     NeighbourGrid grid(lower, upper, radius / 2);
-    for (std::size_t i = 0; i < end; ++i) grid.add(cloud.positions[i], static_cast<std::uint32_t>(i));
+    for (const std::uint32_t i : present) grid.add(cloud.positions[i], i);
     starts_.reserve(active.size() + 1);
     starts_.push_back(0);
     for (const std::uint32_t i : active) {
@@ -76,15 +79,15 @@ Vec3 force_on(const Vec3& p, std::span<const std::uint32_t> neighbours, const st
 /// constrain(i, position, step) puts the moved node where it may be and may shorten its velocity; flatten(i, force)
 /// removes what the node may not follow.
 template <class Flatten, class Constrain>
-void relax(const Shape& shape, double rest, int iterations, std::size_t end, const std::vector<std::uint32_t>& active,
-           Cloud& cloud, Flatten flatten, Constrain constrain) {
+void relax(const Shape& shape, double rest, int iterations, std::span<const std::uint32_t> present,
+           std::span<const std::uint32_t> active, Cloud& cloud, Flatten flatten, Constrain constrain) {
   const double radius = (kReach + kSkin) * rest, half_skin2 = 0.25 * kSkin * kSkin * rest * rest;
   const double longest = kLongestStep * rest;
   std::vector<Vec3> velocities(active.size(), Vec3::Zero()), moved(active.size()), listed(active.size());
   std::optional<NeighbourLists> lists;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     if (!lists) {
-      lists.emplace(cloud, end, active, radius, shape.lower(), shape.upper());
+      lists.emplace(cloud, present, active, radius, shape.lower(), shape.upper());
       for (std::size_t k = 0; k < active.size(); ++k) listed[k] = cloud.positions[active[k]];
     }
     double longest_step2 = 0, farthest2 = 0;
@@ -109,9 +112,9 @@ void relax(const Shape& shape, double rest, int iterations, std::size_t end, con
 }  // namespace
 
 void relax_surface(const Shape& shape, double spacing, int iterations, Cloud& cloud) {
-  std::vector<std::uint32_t> active;
-  for (std::size_t i = cloud.feature_count; i < cloud.surface_count; ++i)
-    active.push_back(static_cast<std::uint32_t>(i));
+  std::vector<std::uint32_t> present(cloud.surface_count);
+  std::iota(present.begin(), present.end(), 0u);
+  const auto active = std::span(present).subspan(cloud.feature_count);
   const auto flatten = [&](std::uint32_t i, const Vec3& force) -> Vec3 {
     return force - dot(force, cloud.normals[i]) * cloud.normals[i];
   };
@@ -120,15 +123,17 @@ void relax_surface(const Shape& shape, double spacing, int iterations, Cloud& cl
     cloud.normals[i] = on.normal;
     return on.point;
   };
-  relax(shape, spacing, iterations, cloud.surface_count, active, cloud, flatten, constrain);
+  relax(shape, spacing, iterations, present, active, cloud, flatten, constrain);
 }
 
 void relax_inside(const Shape& shape, double spacing, int iterations, Cloud& cloud) {
   const double least = kLeastDepth * spacing;
-  std::vector<std::uint32_t> active;
+  std::vector<std::uint32_t> present(cloud.surface_count), active;
+  std::iota(present.begin(), present.end(), 0u);
   std::vector<double> depth(cloud.size());  // a lower bound: the distance is asked again only when it could matter
   for (std::size_t i = cloud.surface_count; i < cloud.size(); ++i) {
     depth[i] = -shape.signed_distance(cloud.positions[i]);
+    if (depth[i] < kFeltDepth * spacing) present.push_back(static_cast<std::uint32_t>(i));
     if (depth[i] < kRelaxedDepth * spacing) active.push_back(static_cast<std::uint32_t>(i));
   }
   const auto constrain = [&](std::uint32_t i, const Vec3& target) -> Vec3 {
@@ -141,7 +146,7 @@ void relax_inside(const Shape& shape, double spacing, int iterations, Cloud& clo
     return on.point - least * on.normal;
   };
   const auto follow = [](std::uint32_t, const Vec3& force) { return force; };
-  relax(shape, kInsideRest * spacing, iterations, cloud.size(), active, cloud, follow, constrain);
+  relax(shape, kInsideRest * spacing, iterations, present, active, cloud, follow, constrain);
 }
 
 }  // namespace crumble

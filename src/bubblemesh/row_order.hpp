@@ -3,13 +3,21 @@
 
 #include "bubblemesh/cloud.hpp"
 #include "bubblemesh/lattice.hpp"
+#include "bubblemesh/square_lattice.hpp"
 
 namespace crumble {
 
 /// Sorts the nodes by layer, row and place of the lattice (by where they are now, so nodes off the lattice join
-/// the nearest row) and the tetrahedra by their nodes: least node first, then the others ascending but for the
-/// last two, whose order carries the orientation. In the bulk, neighbours in a direction then stand at constant
+/// the nearest row), and the tetrahedra with them. In the bulk, neighbours in a direction then stand at constant
 /// offsets.
 void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetrahedron>& tetrahedra);
+
+/// By their nodes: least node first, then the others ascending but for the last two, whose order carries the
+/// orientation.
+void sort_tetrahedra(std::vector<Tetrahedron>& tetrahedra);
+
+/// Fills in rows, places and lattice_neighbours of a mesh whose nodes are in row order.
+void describe_rows(const LatticeFrame& frame, BubbleMesh& body);
+void describe_rows(const std::vector<Site>& sites, BubbleMesh& body);
 
 }  // namespace crumble

@@ -7,33 +7,49 @@
 
 namespace crumble {
 
-std::array<double, 6> dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const std::array<Vec3, 4> p{a, b, c, d};
-  std::array<double, 6> angles{};
+namespace {
+
+/// Cosine and sine of the six dihedral angles, each pair times a positive factor.
+struct Dihedral {
+  double cosine, sine;
+  double cotangent() const { return cosine / sine; }
+  double degrees() const { return std::atan2(sine, cosine) * 180 / kPi; }  // a report: libm is good enough here
+};
+std::array<Dihedral, 6> dihedrals(const std::array<Vec3, 4>& p) {
+  std::array<Dihedral, 6> angles{};
   for (std::size_t e = 0; e < 6; ++e) {
     // edge ij, and the other two corners k and l of the tetrahedron: angle between the parts of k and l across the edge
     const std::size_t i = kTetEdges[e][0], j = kTetEdges[e][1];
     const std::size_t k = kTetEdges[5 - e][0], l = kTetEdges[5 - e][1];
     const Vec3 along = normalized(p[j] - p[i]);
     const Vec3 u = cross(along, p[k] - p[i]), v = cross(along, p[l] - p[i]);
-    // a report, not a decision: libm's atan2 is good enough here
-    angles[e] = std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / kPi;
+    angles[e] = {dot(u, v), norm(cross(u, v))};
   }
+  return angles;
+}
+
+}  // namespace
+
+std::array<double, 6> dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  std::array<double, 6> angles{};
+  std::ranges::transform(dihedrals({a, b, c, d}), angles.begin(), &Dihedral::degrees);
   return angles;
 }
 
 namespace {
 
+/// Angles are compared by their cotangents, which fall where angles rise: an arc tangent for each took half the time.
 void measure_tetrahedra(const TetMesh& mesh, MeshQuality& q) {
-  q.dihedral_min = 180;
+  constexpr double kSliver = 2.747477419454622;  // cotangent of 20 degrees
+  Dihedral least{-1, 0}, greatest{1, 0};
   q.volume_length_min = 1;
   for (const auto& [a, b, c, d] : mesh.tetrahedra) {
     const std::array<Vec3, 4> p{mesh.positions[a], mesh.positions[b], mesh.positions[c], mesh.positions[d]};
-    const auto angles = dihedral_angles(p[0], p[1], p[2], p[3]);
-    const auto [least, greatest] = std::minmax_element(angles.begin(), angles.end());
-    q.dihedral_min = std::min(q.dihedral_min, *least);
-    q.dihedral_max = std::max(q.dihedral_max, *greatest);
-    q.slivers += *least < 20;
+    const auto angles = dihedrals(p);
+    const auto [last, first] = std::ranges::minmax(angles, {}, &Dihedral::cotangent);
+    if (first.cotangent() > least.cotangent()) least = first;
+    if (last.cotangent() < greatest.cotangent()) greatest = last;
+    q.slivers += first.cotangent() > kSliver;
     double squares = 0;
     for (const auto& [i, j] : kTetEdges) squares += squared_norm(p[j] - p[i]);
     const double rms = std::sqrt(squares / 6);
@@ -41,6 +57,8 @@ void measure_tetrahedra(const TetMesh& mesh, MeshQuality& q) {
     q.volume_length_min = std::min(q.volume_length_min, volume_length);
     q.volume_length_mean += volume_length / static_cast<double>(mesh.tetrahedra.size());
   }
+  q.dihedral_min = least.degrees();
+  q.dihedral_max = greatest.degrees();
 }
 
 void measure_edges(const TetMesh& mesh, MeshQuality& q) {

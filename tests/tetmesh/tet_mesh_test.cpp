@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/random.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "crumble/tetmesh/vtk_file.hpp"
 
@@ -40,6 +43,32 @@ TEST(TetMesh, SpringsAreTheUniqueEdges) {
   }
 }
 
+TEST(TetMesh, BoundaryIsWhatOneTetrahedronHas) {
+  TetMesh mesh = make_lattice_box({0.04, 0.03, 0.03}, 0.01);
+  Random random(5);  // tetrahedra and their corners in any order
+  std::vector<Tetrahedron> tets = mesh.tetrahedra;
+  for (std::size_t i = tets.size() - 1; i > 0; --i) std::swap(tets[i], tets[random.below(i + 1)]);
+  for (Tetrahedron& t : tets) std::rotate(t.begin(), t.begin() + random.below(3), t.begin() + 3);
+  mesh = make_tet_mesh(mesh.positions, tets);
+  std::map<std::set<std::uint32_t>, int> count;
+  for (const Tetrahedron& t : tets) {
+    for (int skip = 0; skip < 4; ++skip) {
+      std::set<std::uint32_t> face(t.begin(), t.end());
+      face.erase(t[skip]);
+      ++count[face];
+    }
+  }
+  const auto single = std::ranges::count_if(count, [](const auto& face) { return face.second == 1; });
+  EXPECT_EQ(mesh.boundary.size(), static_cast<std::size_t>(single));
+  std::set<std::set<std::uint32_t>> seen;
+  for (const Triangle& face : mesh.boundary) {
+    const std::set<std::uint32_t> nodes(face.begin(), face.end());
+    EXPECT_EQ(count.at(nodes), 1);
+    EXPECT_TRUE(seen.insert(nodes).second);
+  }
+  EXPECT_EQ(find_surface_defects({mesh.positions, mesh.boundary}).total(), 0u);
+}
+
 TEST(TetMesh, NodeVolumesSumToTheBody) {
   const TetMesh mesh = make_lattice_box({0.03, 0.03, 0.03}, 0.004);
   double sum = 0;
@@ -68,6 +97,8 @@ TEST(TetMesh, RefusesBadMeshesByName) {
   EXPECT_EQ(code_of(more, {{0, 1, 2, 3}}), Code::isolated_node);
   more.back() = corner[1];
   EXPECT_EQ(code_of(more, {{0, 1, 2, 3}}), Code::duplicate_node);
+  more.back() = {-0.0, 1, -0.0};  // the same place as (0, 1, 0)
+  EXPECT_EQ(code_of(more, {{0, 1, 2, 3}, {0, 1, 4, 3}}), Code::duplicate_node);
   more.back() = {std::nan(""), 0, 0};
   EXPECT_EQ(code_of(more, {{0, 1, 2, 3}}), Code::invalid_value);
   more = corner;

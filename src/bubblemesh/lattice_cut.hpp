@@ -1,0 +1,16 @@
+// Cutting a body out of the square lattice.
+#pragma once
+
+#include "bubblemesh/cloud.hpp"
+#include "bubblemesh/lattice_body.hpp"
+
+namespace crumble {
+
+struct LatticeCut {
+  Cloud cloud;  // nodes in row order
+  std::vector<Site> sites;
+  std::vector<Tetrahedron> tetrahedra;
+};
+LatticeCut cut_lattice(const LatticeBody& body, double spacing);
+
+}  // namespace crumble
