@@ -1,4 +1,4 @@
-// Cutting, fragments and surface on a body of about 8000 springs and 6000 tetrahedra.
+// Fragments and surface on a body of about 8000 springs and 6000 tetrahedra.
 //   ./fracture_bench --benchmark_min_time=1
 #include <benchmark/benchmark.h>
 
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "crumble/base/random.hpp"
-#include "crumble/fracture/cut.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -32,21 +31,6 @@ void name_body(benchmark::State& state) {
   state.counters["springs"] = static_cast<double>(body().springs.size());
   state.counters["tetrahedra"] = static_cast<double>(body().tetrahedra.size());
 }
-
-// Eq 8 where no spring is cut: what it costs in nearly every step.
-void cut_test(benchmark::State& state) {
-  const VecArray positions(body().positions);
-  std::vector<double> rest_lengths;
-  for (const auto& [a, b] : body().springs) rest_lengths.push_back(norm(positions[b] - positions[a]));
-  const std::vector<double> limits = squared_length_limits(rest_lengths, 1.1);
-  std::vector<std::uint8_t> intact(body().springs.size(), 1);
-  std::vector<std::uint32_t> newly_cut(body().springs.size());
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(cut_springs(positions, body().springs, limits, intact, newly_cut));
-  }
-  name_body(state);
-}
-BENCHMARK(cut_test)->Unit(benchmark::kMicrosecond);
 
 // The argument is the percentage of cut springs.
 void label_fragments(benchmark::State& state) {

@@ -66,8 +66,10 @@ void report(benchmark::State& state, const Press& press, const StepProfile& sum)
   state.counters["7_finish_step"] = mean_us(sum.finish_step);
 }
 
-void step(benchmark::State& state, const char* scene) {
-  Press press(load_scene(scene, Preset::standard));
+void step(benchmark::State& state, const char* name, Precision precision) {
+  Scene scene = load_scene(name, Preset::standard);
+  scene.def.step.precision = precision;
+  Press press(scene);
   StepProfile sum;
   for (auto _ : state) {
     if (press.at_end()) {
@@ -80,10 +82,14 @@ void step(benchmark::State& state, const char* scene) {
   }
   report(state, press, sum);
 }
-BENCHMARK_CAPTURE(step, cube, "tofu_cube")->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, slab, "tofu_slab")->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, globe, "tofu_globe")->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, cube_8000, "tofu_cube_8000")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, cube_float32, "tofu_cube", Precision::float32)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, cube_float64, "tofu_cube", Precision::float64)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, slab_float32, "tofu_slab", Precision::float32)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, slab_float64, "tofu_slab", Precision::float64)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, globe_float32, "tofu_globe", Precision::float32)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, globe_float64, "tofu_globe", Precision::float64)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, cube_8000_float32, "tofu_cube_8000", Precision::float32)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, cube_8000_float64, "tofu_cube_8000", Precision::float64)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace crumble

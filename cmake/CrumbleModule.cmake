@@ -24,3 +24,9 @@ function(crumble_link_module target module)
     target_link_libraries(${target} PRIVATE crumble_${part})
   endforeach()
 endfunction()
+
+# For programs around the library, which is optimised as it ships: their own code only has to compile quickly (a third
+# less at -O1).
+function(crumble_compile_quickly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()

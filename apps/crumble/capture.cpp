@@ -44,9 +44,10 @@ class SurfaceCamera {
 
 }  // namespace
 
-Rerun rerun(const Recording& recording, const std::vector<std::size_t>& steps) {
+Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps) {
   Rerun result;
-  Simulation sim = recording.start(true);
+  how.energy_audit = true;
+  Simulation sim = recording.start(how);
   SurfaceCamera camera(sim.mesh());
   std::size_t step = 0;
   double refreshed = 0;

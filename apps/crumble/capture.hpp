@@ -21,9 +21,9 @@ struct Rerun {
   std::vector<Capture> captures;
 };
 
-/// `steps`: after which to take the surface, from 0, ascending; one capture each, also when a step stands there twice.
-/// Throws Error(diverged) when a state hash differs from the recording's.
-Rerun rerun(const Recording& recording, const std::vector<std::size_t>& steps);
+/// `how`: kernel and threads. `steps`: after which to take the surface, from 0, ascending; one capture each, also when
+/// a step stands there twice. Throws Error(diverged) when a state hash differs from the recording's.
+Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps);
 
 /// The four phases of the paper's Fig 11: at rest, first touch, half way, deepest.
 std::vector<std::size_t> phase_steps(const std::vector<Sample>& samples);

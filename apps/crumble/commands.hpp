@@ -9,5 +9,6 @@ void add_run(CLI::App& app);
 void add_mesh(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_export(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace crumble::app

@@ -17,16 +17,6 @@ std::unique_ptr<Device> open_press_device(const Scene& scene, const PressOptions
   return open_press(press, scene.def.step.tau * scene.def.step.iterations);
 }
 
-StepCost percentiles(std::vector<double> seconds) {
-  if (seconds.empty()) return {};
-  std::sort(seconds.begin(), seconds.end());
-  const auto at = [&](double share) {
-    const auto last = static_cast<double>(seconds.size() - 1);
-    return 1e6 * seconds[static_cast<std::size_t>(std::ceil(share * last))];
-  };
-  return {at(0.5), at(0.99), at(0.999), at(1)};
-}
-
 // How many ticks a device will be read for: what the caller asked, else what the motion lasts.
 double duration(const Scene& scene, const std::string& device, const PressOptions& press,
                 const Trajectory* trajectory) {
@@ -118,7 +108,7 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
 
     const double before = thread_cpu_seconds();
     const StepInfo& info = experiment.sim.step({&pose, 1});
-    cpu.push_back(thread_cpu_seconds() - before);
+    cpu.push_back(1e6 * (thread_cpu_seconds() - before));
     if (info.status == Code::diverged) {
       throw Error(Code::diverged,
                   "the body diverged at step " + std::to_string(info.step) + ", node " + std::to_string(info.bad_node));
@@ -133,7 +123,7 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
     experiment.peak_force = std::max(experiment.peak_force, norm(wrench.force));
     if (progress && step % 256 == 0) progress(static_cast<double>(step) / static_cast<double>(steps));
   }
-  experiment.cost = percentiles(std::move(cpu));
+  experiment.cost = bench::percentiles(std::move(cpu));
   return experiment;
 }
 

@@ -9,6 +9,7 @@
 
 #include "crumble/device/device.hpp"
 #include "crumble/sim/recording.hpp"
+#include "runner/clocks.hpp"
 #include "scenes/scene.hpp"
 
 namespace crumble::app {
@@ -18,11 +19,6 @@ struct Sample {
   double depth = 0;  // of the tool's lowest point below the body's top at rest, metres; negative above
   Wrench wrench;     // on the tool
   std::uint64_t cuts = 0;
-};
-
-/// CPU time of the steps, microseconds.
-struct StepCost {
-  double p50 = 0, p99 = 0, p99_9 = 0, max = 0;
 };
 
 struct Experiment {
@@ -35,8 +31,8 @@ struct Experiment {
   std::string device;
   bool resampled = false;
   std::vector<Sample> samples;
-  StepCost cost;
-  double peak_force = 0;  // N
+  bench::Percentiles cost;  // CPU time of the steps, microseconds; of all threads, divided by those at work
+  double peak_force = 0;    // N
 };
 
 /// Moves the scene's tool by `device`, "press:MM_PER_S" or "replay:FILE" (empty: what the scene says), until the motion

@@ -3,14 +3,15 @@
 
 #include "commands.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/network/solver.hpp"
 #include "scenes/scene.hpp"
 
 namespace {
 
 std::string version_text() {
-  std::string text =
-      "crumble " CRUMBLE_VERSION ", built by " CRUMBLE_COMPILER "\nprecision: float64\nkernels: reference";
-  text += "\nthreads: 1\ndevices: press replay\nscenes:";
+  std::string text = "crumble " CRUMBLE_VERSION ", built by " CRUMBLE_COMPILER "\nprecision: float64 float32\nkernels:";
+  for (const std::string& name : crumble::kernel_names()) text += " " + name;
+  text += "\nthreads: 1 to 64\ndevices: press replay\nscenes:";
   for (const std::string& name : crumble::scene_names()) text += " " + name;
   return text;
 }
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   crumble::app::add_mesh(app);
   crumble::app::add_replay(app);
   crumble::app::add_export(app);
+  crumble::app::add_bench(app);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const crumble::Error& error) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,7 @@ namespace crumble::app {
 namespace {
 
 struct MeshOptions {
-  std::string shape, out, lattice = "hcp";
+  std::string shape, out, lattice = "hcp", structure = "relaxed";
   std::vector<double> sizes, offset;
   std::optional<double> spacing;
   std::optional<std::uint32_t> surface_nodes, inside_nodes;
@@ -66,6 +67,13 @@ BubbleMeshOptions bubble_options(const MeshOptions& options) {
     throw Error(Code::unsupported, "--lattice '" + options.lattice + "' is not known; there are: hcp fcc");
   }
   if (options.lattice == "fcc") bubble.lattice = Lattice::fcc;
+  if (options.structure != "relaxed" && options.structure != "lattice") {
+    throw Error(Code::unsupported, "--structure '" + options.structure + "' is not known; there are: relaxed lattice");
+  }
+  if (options.structure == "lattice") {
+    bubble.structure = Structure::lattice;
+    bubble.surface_nodes = bubble.inside_nodes = std::nullopt;  // the paper's numbers are of the relaxed structure
+  }
   if (options.surface_nodes) bubble.surface_nodes = options.surface_nodes;
   if (options.inside_nodes) bubble.inside_nodes = options.inside_nodes;
   return bubble;
@@ -76,10 +84,18 @@ void write_mesh(const TetMesh& mesh, const std::filesystem::path& path) {
   render::write_mesh_file({mesh.positions, mesh.boundary}, {}, path);
 }
 
-nlohmann::ordered_json to_json(const BubbleMesh& body, double seconds) {
+double share(const std::vector<std::uint8_t>& flags) {
+  return static_cast<double>(std::ranges::count(flags, 1)) / static_cast<double>(flags.size());
+}
+
+nlohmann::ordered_json to_json(const BubbleMesh& body, const std::string& structure, double seconds) {
   const TetMesh& mesh = body.mesh;
   const MeshQuality& q = body.quality;
-  return {{"nodes", mesh.node_count()},
+  return {{"structure", structure},
+          {"rows", body.rows.size()},
+          {"lattice_neighbour_share", share(body.lattice_neighbours)},
+          {"share_in_runs_of_4", share_in_runs(mesh, 4)},
+          {"nodes", mesh.node_count()},
           {"surface_nodes", mesh.surface_node_count()},
           {"springs", mesh.springs.size()},
           {"tetrahedra", mesh.tetrahedra.size()},
@@ -108,11 +124,11 @@ void mesh(const MeshOptions& options) {
   const BubbleMesh body = generate(*shape, bubble_options(options));
   const double seconds = thread_cpu_seconds() - before;
   if (!out.empty()) write_mesh(body.mesh, out);
-  const nlohmann::ordered_json json = to_json(body, seconds);
+  const nlohmann::ordered_json json = to_json(body, options.structure, seconds);
   if (options.json) {
     std::puts(json.dump(1).c_str());
   } else {
-    for (const auto& [key, value] : json.items()) std::printf("%-22s %s\n", key.c_str(), value.dump().c_str());
+    for (const auto& [key, value] : json.items()) std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
   }
 }
 
@@ -130,7 +146,11 @@ void add_mesh(CLI::App& app) {
   command->add_option("--spacing", options->spacing, "Distance between neighbouring nodes, metres");
   command->add_option("--surface-nodes", options->surface_nodes, "Exact number of nodes on the surface");
   command->add_option("--inside-nodes", options->inside_nodes, "Exact number of nodes inside");
-  command->add_option("--lattice", options->lattice, "hcp or fcc")->capture_default_str();
+  command->add_option("--lattice", options->lattice, "hcp or fcc, of the relaxed structure")->capture_default_str();
+  command
+      ->add_option("--structure", options->structure,
+                   "relaxed: even distances near the surface; lattice: lattice neighbours everywhere, the fastest")
+      ->capture_default_str();
   command->add_option("--offset", options->offset, "Shift of the lattice, in spacings")->expected(3);
   command->add_option("--out", options->out, "Mesh as .vtk, or its surface as " + render::mesh_file_extensions());
   command->add_flag("--json", options->json, "Print one JSON object");

@@ -21,6 +21,11 @@ void require_surface_extension(const std::filesystem::path& path, const std::str
 std::string to_json(const Experiment& experiment, const Rerun& again);
 std::string to_report(const Experiment& experiment, const Rerun& again, const std::filesystem::path& folder);
 
+/// "float64" or "float32".
+std::string precision_text(const Simulation& sim);
+/// "float64, avx2 kernel, 1 thread"
+std::string solver_text(const Simulation& sim);
+
 /// 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 

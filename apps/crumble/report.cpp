@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // How often 300 Hz fits into the 99th percentile of a step's CPU time.
-double rate_multiple(const StepCost& cost) {
+double rate_multiple(const bench::Percentiles& cost) {
   return 1e6 / (cost.p99 * 300);
 }
 
@@ -41,6 +41,17 @@ Json ledger(const EnergyLedger& l) {
           {"cut_j", l.cut}};
 }
 
+Json layout(const Simulation& sim) {
+  const LayoutReport l = sim.layout();
+  const auto springs = static_cast<double>(sim.mesh().springs.size());
+  return {{"lane_use", springs / static_cast<double>(l.lanes)},
+          {"share_in_segments", static_cast<double>(l.springs_in_segments) / springs},
+          {"segments", l.segments},
+          {"batches", l.batches},
+          {"partitions", l.partitions},
+          {"sorted", l.sorted}};
+}
+
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -56,6 +67,15 @@ std::string line(const char* format, Values... values) {
   return text;
 }
 
+std::string layout_line(const Simulation& sim) {
+  const LayoutReport l = sim.layout();
+  const auto springs = static_cast<double>(sim.mesh().springs.size());
+  return line("layout      %.0f %% of the springs in segments, %zu in batches, lane use %.2f, %u partition%s\n",
+              100 * static_cast<double>(l.springs_in_segments) / springs,
+              sim.mesh().springs.size() - l.springs_in_segments, springs / static_cast<double>(l.lanes), l.partitions,
+              l.partitions == 1 ? "" : "s");
+}
+
 std::string curve(const Experiment& experiment) {
   const bool over_time = experiment.scene.trajectory.has_value();
   std::vector<double> x, y;
@@ -67,6 +87,16 @@ std::string curve(const Experiment& experiment) {
 }
 
 }  // namespace
+
+std::string precision_text(const Simulation& sim) {
+  return sim.definition().step.precision == Precision::float32 ? "float32" : "float64";
+}
+
+std::string solver_text(const Simulation& sim) {
+  const std::uint32_t threads = sim.definition().step.threads;
+  return precision_text(sim) + ", " + sim.kernel() + " kernel, " + std::to_string(threads) +
+         (threads == 1 ? " thread" : " threads");
+}
 
 std::string hash_text(std::uint64_t hash) {
   return line("%016llx", static_cast<unsigned long long>(hash));
@@ -95,14 +125,15 @@ std::string to_json(const Experiment& experiment, const Rerun& again) {
                      {"torque_nm", to_array(s.wrench.torque)}});
   }
   json["force"] = std::move(force);
-  const StepCost& cost = experiment.cost;
+  const bench::Percentiles& cost = experiment.cost;
   json["step_cpu_us"] = {{"p50", cost.p50}, {"p99", cost.p99}, {"p99_9", cost.p99_9}, {"max", cost.max}};
   json["rate_multiple_of_300hz"] = rate_multiple(cost);
   json["energy_gain_max_relative"] = again.ledger.gain_max_relative;
   json["energy_ledger"] = ledger(again.ledger);
-  json["precision"] = "float64";
-  json["kernel"] = "reference";
-  json["threads"] = 1;
+  json["precision"] = precision_text(experiment.sim);
+  json["kernel"] = experiment.sim.kernel();
+  json["threads"] = experiment.sim.definition().step.threads;
+  json["layout"] = layout(experiment.sim);
   json["state_hash"] = hash_text(experiment.sim.state_hash());
   json["counters"] = counters(experiment);
   json["warnings"] = experiment.scene.warnings;
@@ -124,8 +155,10 @@ std::string to_report(const Experiment& experiment, const Rerun& again, const st
                m.length_limit, 1e3 * m.mass, 1e3 * step.tau);
   text += line("motion      %s%s, %zu steps\n", experiment.device.c_str(), experiment.resampled ? ", resampled" : "",
                experiment.samples.size());
-  text += line("step        CPU p50 %.1f us, p99 %.1f us, max %.1f us: %.0f times the 300 Hz that a hand needs\n",
-               experiment.cost.p50, experiment.cost.p99, experiment.cost.max, rate_multiple(experiment.cost));
+  text += layout_line(experiment.sim);
+  text += line("step        %s: CPU p50 %.1f us, p99 %.1f us, max %.1f us: %.0f times the 300 Hz that a hand needs\n",
+               solver_text(experiment.sim).c_str(), experiment.cost.p50, experiment.cost.p99, experiment.cost.max,
+               rate_multiple(experiment.cost));
   text += line("fracture    %llu springs cut, %zu fragments\n",
                static_cast<unsigned long long>(experiment.sim.counters().cuts), count_fragments(experiment.sim));
   text += line("force       peak %.2f N\n", experiment.peak_force);

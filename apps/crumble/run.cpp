@@ -4,32 +4,28 @@
 
 #include "commands.hpp"
 #include "output.hpp"
+#include "runner/measure.hpp"
+#include "solver_options.hpp"
 
 namespace crumble::app {
 namespace {
 
 struct RunOptions {
-  std::string scene, device, preset = "default", precision = "float64", kernel = "reference";
+  std::string scene, device, preset = "default", precision;
   std::optional<double> seconds, tau;
-  int threads = 1;
+  SolverOptions solver;
   std::string out;
   bool json = false;
 };
-
-void require_one_of(const std::string& option, const std::string& value, const std::string& known) {
-  if (value != known) {
-    throw Error(Code::unsupported, option + " '" + value + "' is not in this build, which has: " + known);
-  }
-}
 
 void show_progress(double share) {
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r%3.0f %%", 100 * share);
 }
 
 void run(const RunOptions& options) {
-  require_one_of("--precision", options.precision, "float64");
-  require_one_of("--kernel", options.kernel, "reference");
-  require_one_of("--threads", std::to_string(options.threads), "1");
+  std::optional<Precision> precision;
+  if (!options.precision.empty()) precision = bench::parse_precision(options.precision);
+  check(options.solver);
   if (options.preset != "default" && options.preset != "paper") {
     throw Error(Code::unsupported, "--preset '" + options.preset + "' is not known; there are: default paper");
   }
@@ -41,9 +37,11 @@ void run(const RunOptions& options) {
   if (!options.out.empty()) folder.emplace(options.out);
   Scene scene = load_scene(options.scene, options.preset == "paper" ? Preset::paper : Preset::standard);
   if (options.tau) scene.def.step.tau = *options.tau;
+  if (precision) scene.def.step.precision = *precision;
+  apply(options.solver, scene.def.step);
   const Experiment experiment = run_experiment(std::move(scene), options.device, options.seconds, show_progress);
-  const Rerun again =
-      rerun(experiment.recording, folder ? phase_steps(experiment.samples) : std::vector<std::size_t>{});
+  const Rerun again = rerun(experiment.recording, experiment.scene.def.step,
+                            folder ? phase_steps(experiment.samples) : std::vector<std::size_t>{});
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
   if (folder) write_outputs(experiment, again, *folder);
   const std::string text = options.json ? to_json(experiment, again) : to_report(experiment, again, options.out);
@@ -62,9 +60,8 @@ void add_run(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "Simulated time; else until the motion is over");
   command->add_option("--dt", options->tau, "Time step tau, s");
   command->add_option("--preset", options->preset, "default or paper")->capture_default_str();
-  command->add_option("--precision", options->precision, "float64")->capture_default_str();
-  command->add_option("--kernel", options->kernel, "reference")->capture_default_str();
-  command->add_option("--threads", options->threads, "1")->capture_default_str();
+  command->add_option("--precision", options->precision, "float64 or float32; else what the scene says");
+  add_options(*command, options->solver);
   command->add_option("--out", options->out,
                       "Folder for force.csv, force.svg, phases.png, surface_*.ply, experiment.crec");
   command->add_flag("--json", options->json, "Print one JSON object instead of the report");

@@ -1,6 +1,7 @@
 #include "sim_def.hpp"
 
 #include "defs.hpp"
+#include "kernels.hpp"
 
 namespace crumble::capi {
 
@@ -16,6 +17,7 @@ crumble_sim_def read_sim_def(const crumble_sim_def* def) {
   require_at_most("contact_rule", given.contact_rule, CRUMBLE_CONTACT_ALONG_MOTION);
   require_at_most("mean_force", given.mean_force, 1);
   require_at_most("reserved", given.reserved, 0);
+  require_at_most("precision", given.precision, CRUMBLE_PRECISION_FLOAT32);
   return given;
 }
 
@@ -32,6 +34,10 @@ void apply(const crumble_sim_def& from, SimulationDef& to) {
   to.step.contact_rule = static_cast<ContactRule>(from.contact_rule);
   to.step.cut_fade = from.cut_fade;
   to.step.mean_force = from.mean_force != 0;
+  to.step.precision = static_cast<Precision>(from.precision);
+  to.step.kernel = from.kernel ? from.kernel : "";
+  to.step.threads = from.threads;
+  to.step.host_threads = {from.host_threads, from.host_context};
 }
 
 crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
@@ -50,6 +56,11 @@ crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
   out.contact_rule = static_cast<std::uint32_t>(def.step.contact_rule);
   out.cut_fade = def.step.cut_fade;
   out.mean_force = def.step.mean_force;
+  out.precision = static_cast<std::uint32_t>(def.step.precision);
+  out.threads = def.step.threads;
+  if (!def.step.kernel.empty()) out.kernel = crumble_kernel_name(kernel_number(def.step.kernel));
+  out.host_threads = def.step.host_threads.run;
+  out.host_context = def.step.host_threads.context;
   return out;
 }
 

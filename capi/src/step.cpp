@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "defs.hpp"
+#include "kernels.hpp"
 #include "objects.hpp"
 
 namespace crumble::capi {
@@ -112,6 +113,19 @@ crumble_profile to_c(const StepProfile& profile) {
           profile.finish_step};
 }
 
+crumble_sim_info describe_solver(const Simulation& simulation) {
+  const LayoutReport layout = simulation.layout();
+  crumble_sim_info out{};
+  out.kernel = kernel_number(simulation.kernel());
+  out.springs_in_segments = static_cast<std::uint32_t>(layout.springs_in_segments);
+  out.lanes = static_cast<std::uint32_t>(layout.lanes);
+  out.segments = static_cast<std::uint32_t>(layout.segments);
+  out.batches = static_cast<std::uint32_t>(layout.batches);
+  out.partitions = layout.partitions;
+  out.sorted = layout.sorted;
+  return out;
+}
+
 }  // namespace
 }  // namespace crumble::capi
 
@@ -143,6 +157,13 @@ crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters* count
 crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile* profile) {
   return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
     write_struct("profile", profile, to_c(s.simulation.profile()));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_get_info(crumble_sim sim, crumble_sim_info* info) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
+    write_struct("info", info, describe_solver(s.simulation));
     return CRUMBLE_OK;
   });
 }

@@ -1,5 +1,8 @@
+#include <memory>
+
 #include "call.hpp"
 #include "crumble/crumble.h"
+#include "kernels.hpp"
 
 // project(VERSION) is where the version is written; the header repeats it so that it can be read without CMake.
 static_assert(CRUMBLE_VERSION_MAJOR == CRUMBLE_PROJECT_MAJOR && CRUMBLE_VERSION_MINOR == CRUMBLE_PROJECT_MINOR &&
@@ -20,8 +23,20 @@ const char* crumble_version_string(void) {
 }
 
 const char* crumble_build_info(void) {
-  return "crumble " CRUMBLE_VERSION_TEXT ", revision " CRUMBLE_REVISION ", " CRUMBLE_COMPILER ", " CRUMBLE_BUILD_TYPE
-         ", float64 scalar";
+  static constexpr const char* kBuild =
+      "crumble " CRUMBLE_VERSION_TEXT ", revision " CRUMBLE_REVISION ", " CRUMBLE_COMPILER ", " CRUMBLE_BUILD_TYPE;
+  const char* info = kBuild;
+  crumble::capi::guard(__func__, [&](const crumble::capi::Call&) {
+    static const auto* const text = [] {  // never destroyed, as the others
+      auto made = std::make_unique<std::string>(kBuild);
+      *made += ", kernels";
+      for (const std::string& name : crumble::capi::kernel_texts()) *made += " " + name;
+      return made.release();
+    }();
+    info = text->c_str();
+    return CRUMBLE_OK;
+  });
+  return info;
 }
 
 crumble_result crumble_check_version(uint32_t header_version) {

@@ -13,6 +13,20 @@
 namespace crumble {
 namespace {
 
+Structure read_structure(Fields& body) {
+  const std::string name = body.text("structure");
+  if (name == "relaxed") return Structure::relaxed;
+  if (name == "lattice") return Structure::lattice;
+  Fields::fail(body.name("structure"), "must be relaxed or lattice, is " + name);
+}
+
+Precision read_precision(Fields& scene) {
+  const std::string name = scene.text("precision");
+  if (name == "float64") return Precision::float64;
+  if (name == "float32") return Precision::float32;
+  Fields::fail(scene.name("precision"), "must be float64 or float32, is " + name);
+}
+
 BubbleMesh read_body(Fields body) {
   if (body.has("paper")) {
     const std::string name = body.text("paper");
@@ -39,6 +53,7 @@ BubbleMesh read_body(Fields body) {
   BubbleMeshOptions options;
   options.spacing = body.positive("spacing");
   options.offset = body.vector("offset", options.offset);
+  if (body.has("structure")) options.structure = read_structure(body);
   if (body.has("surface_nodes")) options.surface_nodes = body.count("surface_nodes");
   if (body.has("inside_nodes")) options.inside_nodes = body.count("inside_nodes");
   body.finish();
@@ -163,6 +178,7 @@ Scene read_scene(Fields fields, const std::filesystem::path& folder, Preset pres
     for (Fields& wall : fields.objects("walls")) scene.def.walls.push_back(read_wall(std::move(wall)));
   }
   scene.def.tools.push_back(read_tool(fields.object("tool")));
+  if (fields.has("precision")) scene.def.step.precision = read_precision(fields);
   if (preset == Preset::paper) apply_paper_preset(scene.def);
   scene.start = read_start(fields.object("start"), scene);
   scene.press.start = scene.start;

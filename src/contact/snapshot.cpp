@@ -57,14 +57,14 @@ void Contacts::load(ByteReader& in) {
     const double w = get_finite(in), x = get_finite(in), y = get_finite(in), z = get_finite(in);
     m.to.orientation = Quat(w, x, y, z);
     m.from = m.to;
+    m.from_frame = m.to_frame = Frame(m.to);
     require(is_valid(m.to), "tool pose");
     const auto flags = in.get<std::uint8_t>();
     require(flags < 8, "tool state");
     m.placed = flags & 1, m.engaged = flags >> 1 & 1, m.jumped = flags >> 2 & 1;
   }
   const auto count = in.get<std::uint64_t>();
-  require(count <= fixed_.size(), "number of contacts");
-  std::fill(taken_.begin(), taken_.end(), 0);
+  require(count <= uses_.size(), "number of contacts");
   for (std::uint64_t k = 0; k < count; ++k) {
     NodeConstraint c;
     Place place;
@@ -76,8 +76,7 @@ void Contacts::load(ByteReader& in) {
     c.reaction = get_vector(in);
     place.face = in.get<std::uint32_t>();
     place.anchor = get_vector(in);
-    require(c.node < fixed_.size() && !fixed_[c.node] && !taken_[c.node], "contact node");
-    taken_[c.node] = 1;
+    require(c.node < uses_.size() && uses_[c.node] == Use::free, "contact node");
     require(c.holder == kWorldHolder || c.holder < tools_.size(), "contact holder");
     require(place.face < (c.holder == kWorldHolder ? walls_.size() : tools_[c.holder].shape.planes.size()),
             "contact face");
@@ -85,6 +84,7 @@ void Contacts::load(ByteReader& in) {
     c.state = static_cast<ContactState>(state);
     constraints_.push_back(c);
     places_.push_back(place);
+    uses_[c.node] = Use::held;
   }
 }
 

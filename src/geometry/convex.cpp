@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -55,18 +56,39 @@ void check_closed(const TriangleMesh& mesh) {
   if (volume(mesh) <= 0) throw Error(Code::mesh_orientation, "tool mesh faces inward: its volume is negative");
 }
 
-// One plane per flat face: triangles of the same plane share it.
-std::vector<Plane> face_planes(const TriangleMesh& mesh, double size) {
+// One plane per flat face: triangles of the same plane share it; `plane_of` receives that of each triangle.
+std::vector<Plane> face_planes(const TriangleMesh& mesh, double size, std::vector<std::size_t>& plane_of) {
   std::vector<Plane> planes;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 n = normalized(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
     const Plane plane{n, dot(n, mesh.vertices[a])};
-    const bool known = std::any_of(planes.begin(), planes.end(), [&](const Plane& p) {
+    const auto known = std::find_if(planes.begin(), planes.end(), [&](const Plane& p) {
       return norm(p.normal - plane.normal) < 1e-9 && std::abs(p.offset - plane.offset) < 1e-9 * size;
     });
-    if (!known) planes.push_back(plane);
+    plane_of.push_back(static_cast<std::size_t>(known - planes.begin()));
+    if (known == planes.end()) planes.push_back(plane);
   }
   return planes;
+}
+
+FaceTable face_table(const std::vector<Plane>& planes, const TriangleMesh& mesh,
+                     const std::vector<std::size_t>& plane_of) {
+  FaceTable table;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    table.x.push_back(planes[i].normal.x());
+    table.y.push_back(planes[i].normal.y());
+    table.z.push_back(planes[i].normal.z());
+    table.offset.push_back(planes[i].offset);
+    table.first_triangle.push_back(static_cast<std::uint32_t>(table.triangles.size()));
+    for (std::size_t t = 0; t < plane_of.size(); ++t) {
+      if (plane_of[t] == i) table.triangles.push_back(mesh.triangles[t]);
+    }
+  }
+  table.first_triangle.push_back(static_cast<std::uint32_t>(table.triangles.size()));
+  const std::size_t padded = (planes.size() + FaceTable::kLanes - 1) / FaceTable::kLanes * FaceTable::kLanes;
+  table.x.resize(padded), table.y.resize(padded), table.z.resize(padded);
+  table.offset.resize(padded, std::numeric_limits<double>::infinity());
+  return table;
 }
 
 void check_convex(const ConvexPolyhedron& body, double size) {
@@ -91,26 +113,62 @@ double inscribed_radius(const ConvexPolyhedron& body) {
 
 }  // namespace
 
+// Four lanes as two vectors of GCC's and Clang's own kind: the loop over plain arrays they turn into jumps, one for
+// each plane. Each lane keeps the first of its greatest, and of the lanes that share the greatest of all the one with
+// the least index wins: what one loop over the planes would find, on every processor.
 double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std::uint32_t& nearest) {
-  double greatest = dot(body.planes[0].normal, p) - body.planes[0].offset;
-  nearest = 0;
-  for (std::uint32_t i = 1; i < body.planes.size(); ++i) {
-    const double distance = dot(body.planes[i].normal, p) - body.planes[i].offset;
-    if (distance > greatest) greatest = distance, nearest = i;
+  using Pair = double __attribute__((vector_size(16)));
+  using Indexes = std::int64_t __attribute__((vector_size(16)));
+  static_assert(FaceTable::kLanes == 4);
+  const FaceTable& f = body.faces;
+  const double px = p.x(), py = p.y(), pz = p.z();
+  const auto pair = [](const std::vector<double>& from, std::size_t i) {
+    Pair to;
+    std::memcpy(&to, from.data() + i, sizeof to);
+    return to;
+  };
+  const auto distance = [&](std::size_t i) {
+    return ((pair(f.x, i) * px + pair(f.y, i) * py) + pair(f.z, i) * pz) - pair(f.offset, i);
+  };
+  Pair greatest[2] = {distance(0), distance(2)};
+  Indexes plane[2] = {{0, 1}, {2, 3}}, here[2] = {{0, 1}, {2, 3}};
+  for (std::size_t i = 4; i < f.x.size(); i += 4) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Pair d = distance(i + 2 * k);
+      const Indexes more = d > greatest[k];
+      here[k] += 4;
+      greatest[k] = more ? d : greatest[k];
+      plane[k] = more ? here[k] : plane[k];
+    }
   }
-  return greatest;
+  double best = greatest[0][0];
+  std::int64_t first = plane[0][0];
+  for (std::size_t lane = 1; lane < 4; ++lane) {
+    const double d = greatest[lane / 2][lane % 2];
+    const std::int64_t i = plane[lane / 2][lane % 2];
+    if (d > best || (d == best && i < first)) best = d, first = i;
+  }
+  nearest = static_cast<std::uint32_t>(first);
+  return best;
 }
 
-SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p) {
+// The nearest point of a convex body lies on a face that p is above: p - q is a sum of normals of the faces at q with
+// factors >= 0, so not all of these faces can have p below them.
+SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p, double far) {
   SurfaceQuery query{};
   query.signed_distance = greatest_plane_distance(body, p, query.plane);
   query.point = p - query.signed_distance * body.planes[query.plane].normal;
-  if (query.signed_distance <= 0) return query;
+  if (query.signed_distance <= 0 || query.signed_distance > far) return query;
+  const FaceTable& f = body.faces;
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b, c] : body.surface.triangles) {
-    const Vec3 q = closest_on_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c]);
-    const double squared = squared_norm(p - q);
-    if (squared < least) least = squared, query.point = q;
+  for (std::size_t i = 0; i < body.planes.size(); ++i) {
+    if (dot(body.planes[i].normal, p) - body.planes[i].offset <= 0) continue;
+    for (std::uint32_t t = f.first_triangle[i]; t < f.first_triangle[i + 1]; ++t) {
+      const auto& [a, b, c] = f.triangles[t];
+      const Vec3 q = closest_on_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c]);
+      const double squared = squared_norm(p - q);
+      if (squared < least) least = squared, query.point = q;
+    }
   }
   query.signed_distance = std::sqrt(least);
   return query;
@@ -125,7 +183,9 @@ ConvexPolyhedron make_convex(const TriangleMesh& mesh) {
   const double size = extent(mesh);
   check_triangles(mesh, size);
   check_closed(mesh);
-  ConvexPolyhedron body{face_planes(mesh, size), mesh.vertices, mesh, 0};
+  std::vector<std::size_t> plane_of;
+  ConvexPolyhedron body{face_planes(mesh, size, plane_of), mesh.vertices, mesh, 0, {}};
+  body.faces = face_table(body.planes, mesh, plane_of);
   check_convex(body, size);
   body.half_thickness = inscribed_radius(body);
   return body;

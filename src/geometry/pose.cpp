@@ -34,16 +34,6 @@ Quat multiply(const Quat& a, const Quat& b) {
           ((a.w() * b.z() + a.z() * b.w()) + a.x() * b.y()) - a.y() * b.x()};
 }
 
-Vec3 rotate(const Mat3& r, const Vec3& v) {
-  return {(r(0, 0) * v.x() + r(0, 1) * v.y()) + r(0, 2) * v.z(), (r(1, 0) * v.x() + r(1, 1) * v.y()) + r(1, 2) * v.z(),
-          (r(2, 0) * v.x() + r(2, 1) * v.y()) + r(2, 2) * v.z()};
-}
-
-Vec3 rotate_back(const Mat3& r, const Vec3& v) {
-  return {(r(0, 0) * v.x() + r(1, 0) * v.y()) + r(2, 0) * v.z(), (r(0, 1) * v.x() + r(1, 1) * v.y()) + r(2, 1) * v.z(),
-          (r(0, 2) * v.x() + r(1, 2) * v.y()) + r(2, 2) * v.z()};
-}
-
 bool is_valid(const Pose& pose) {
   const double length = std::sqrt(squared_length(pose.orientation));
   return is_finite(pose.position) && std::abs(length - 1) <= 1e-3;

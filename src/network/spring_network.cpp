@@ -70,9 +70,4 @@ SpringNetwork make_network(const TetMesh& mesh, const Material& material, MassRu
   return network;
 }
 
-NetworkState make_rest_state(const TetMesh& mesh, const SpringNetwork& network) {
-  const std::size_t n = mesh.node_count();
-  return {VecArray(mesh.positions), VecArray(n), VecArray(n), VecArray(n), network.stiffnesses};
-}
-
 }  // namespace crumble

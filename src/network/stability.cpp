@@ -28,7 +28,7 @@ double stability_limit(double gamma) {
   return std::min(2 / tanh_defect(gamma / 2), gamma / bernoulli_defect(gamma));
 }
 
-double largest_eigenvalue(const SpringNetwork& network, const NetworkState& rest) {
+double largest_eigenvalue(const SpringNetwork& network, std::span<const Vec3> rest_positions) {
   Random random(1);
   std::vector<Vec3> v(network.node_count()), kv(network.node_count());
   for (Vec3& each : v) each = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -37,7 +37,7 @@ double largest_eigenvalue(const SpringNetwork& network, const NetworkState& rest
     std::fill(kv.begin(), kv.end(), Vec3::Zero());
     for (std::size_t s = 0; s < network.spring_count(); ++s) {
       const auto [i, j] = network.springs[s];
-      const Vec3 along = normalized(rest.positions[j] - rest.positions[i]);
+      const Vec3 along = normalized(rest_positions[j] - rest_positions[i]);
       const Vec3 force = network.stiffnesses[s] * dot(along, v[j] - v[i]) * along;
       kv[i] -= force, kv[j] += force;
     }

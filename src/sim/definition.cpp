@@ -9,6 +9,7 @@ void apply_paper_preset(SimulationDef& def) {
   def.step.policy = TimeStepPolicy::unchecked;
   def.step.iterations = 1;
   def.step.contact_rule = ContactRule::along_motion;
+  def.step.cut_test = CutTest::after_move;
   def.step.cut_fade = 0;
   def.step.mean_force = true;
   def.mass_rule = MassRule::equal;
@@ -28,7 +29,7 @@ std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height) {
 
 namespace {
 
-constexpr std::uint32_t kDefinitionVersion = 1;
+constexpr std::uint32_t kDefinitionVersion = 2;  // 2: precision, cut test
 
 void put(ByteWriter& out, const Vec3& v) {
   out.put(v.x()), out.put(v.y()), out.put(v.z());
@@ -84,7 +85,8 @@ Friction get_friction(ByteReader& in) {
 void put(ByteWriter& out, const StepSettings& s) {
   out.put(s.tau), out.put(static_cast<std::uint8_t>(s.policy)), out.put(s.iterations);
   out.put(static_cast<std::uint8_t>(s.contact_rule)), out.put(s.cut_fade),
-      out.put(static_cast<std::uint8_t>(s.mean_force));
+      out.put(static_cast<std::uint8_t>(s.mean_force)), out.put(static_cast<std::uint8_t>(s.precision));
+  out.put(static_cast<std::uint8_t>(s.cut_test));
 }
 
 StepSettings get_settings(ByteReader& in) {
@@ -95,12 +97,14 @@ StepSettings get_settings(ByteReader& in) {
   s.contact_rule = get_enum<ContactRule>(in, 1, "contact rule");
   s.cut_fade = in.get<double>();
   s.mean_force = in.get<std::uint8_t>() != 0;
+  s.precision = get_enum<Precision>(in, 1, "precision");
+  s.cut_test = get_enum<CutTest>(in, 1, "cut test");
   return s;
 }
 
 }  // namespace
 
-// The energy audit is left out: it observes and changes no bit of the state.
+// Energy audit, kernel and threads are left out: they change no bit of the state.
 void write_definition(const SimulationDef& def, ByteWriter& out) {
   out.put(kDefinitionVersion);
   put(out, def.mesh.positions);

@@ -45,10 +45,13 @@ void Recording::add(std::span<const Pose> poses, std::uint64_t state_hash) {
   hashes_.push_back(state_hash);
 }
 
-Simulation Recording::start(bool energy_audit) const {
+Simulation Recording::start(const StepSettings& how) const {
   ByteReader in(definition_, "recording");
   SimulationDef def = read_definition(in);
-  def.step.energy_audit = energy_audit;
+  def.step.energy_audit = how.energy_audit;
+  def.step.kernel = how.kernel;
+  def.step.threads = how.threads;
+  def.step.host_threads = how.host_threads;
   Simulation sim(std::move(def));
   sim.restore(snapshot_);
   return sim;

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "crumble/base/hash.hpp"
-#include "crumble/fracture/cut.hpp"
 
 namespace crumble {
 namespace {
@@ -41,10 +40,24 @@ VecArray weights(const SpringNetwork& network, const Vec3& gravity) {
   return forces;
 }
 
-// Substeps in which a cut spring still pulls, beyond the one that cut it.
+// Substeps in which a cut spring still pulls: that in which it is found too long and those after.
 std::uint32_t fade_substeps(const StepSettings& settings, const StepCoefficients& coefficients) {
   require_in_range("step.cut_fade", settings.cut_fade, 0, 1);
   return static_cast<std::uint32_t>(std::max(std::floor(settings.cut_fade / coefficients.substep + 0.5) - 1, 0.0));
+}
+
+SolverSettings solver_settings(const SimulationDef& def, std::uint32_t fade_substeps) {
+  if (def.step.threads < 1 || def.step.threads > 64) {
+    throw Error(Code::out_of_range, "step.threads must lie in [1, 64], is " + std::to_string(def.step.threads));
+  }
+  SolverSettings settings;
+  settings.precision = def.step.precision;
+  settings.kernel = def.step.kernel;
+  settings.threads = def.step.threads;
+  settings.host_threads = def.step.host_threads;
+  if (def.step.cut_test == CutTest::with_forces) settings.length_limit = def.material.length_limit;
+  settings.cut_share = static_cast<double>(fade_substeps) / (fade_substeps + 1);
+  return settings;
 }
 
 }  // namespace
@@ -53,22 +66,21 @@ Simulation::Simulation(SimulationDef def)
     : def_(checked(std::move(def))),
       network_(make_network(def_.mesh, def_.material, def_.mass_rule, def_.fixed_nodes)),
       coefficients_(make_coefficients(network_, def_.step.tau, def_.step.policy)),
-      squared_limits_(squared_length_limits(network_.rest_lengths, def_.material.length_limit)),
       layout_hash_(hash_definition(def_)),
       reference_energy_(reference_energy(network_)),
-      state_(make_rest_state(def_.mesh, network_)),
+      fade_substeps_(fade_substeps(def_.step, coefficients_)),
+      solver_(NetworkSolver::make(network_, coefficients_, def_.mesh.positions, solver_settings(def_, fade_substeps_))),
       contacts_(def_.tools, def_.walls, network_.fixed, def_.step.contact_rule),
-      solver_(network_.node_count()),
+      stiffnesses_(network_.stiffnesses),
+      external_(weights(network_, def_.gravity)),
       intact_(network_.spring_count(), 1),
       new_cuts_(network_.spring_count()),
-      fade_substeps_(fade_substeps(def_.step, coefficients_)),
       start_poses_(def_.tools.size()),
       wrenches_(def_.tools.size()),
       history_(def_.tools.size()) {
-  state_.external = weights(network_, def_.gravity);
-  good_positions_ = good_velocities_ = state_.positions;
+  positions_ = velocities_ = before_solve_ = VecArray(network_.node_count());
+  solver_->set_external(external_);
   fading_.reserve(network_.spring_count());
-  before_solve_ = state_.positions;
   counters_.guarded_nodes = coefficients_.guarded_nodes;
 }
 
@@ -87,8 +99,7 @@ void Simulation::begin_step() noexcept {
   info_.flags = 0;
   info_.new_cuts = 0;
   for (std::size_t tool = 0; tool < start_poses_.size(); ++tool) start_poses_[tool] = contacts_.pose(tool);
-  good_positions_ = state_.positions;
-  good_velocities_ = state_.velocities;
+  forget_copies();
 }
 
 // Eq (6): the tool feels the opposite of what it does to the nodes.
@@ -127,32 +138,38 @@ void Simulation::finish_step() noexcept {
   info_.time = static_cast<double>(info_.step) * (def_.step.tau * def_.step.iterations);
 }
 
-// A node that is not a number, farther than 1 km or faster than 1 km/s stops everything at the last good state.
+// A node that would go farther than 1 km, faster than 1 km/s or to what is not a number stays, and stops everything.
 bool Simulation::find_divergence() noexcept {
-  constexpr double kMost = 1e3;
-  const auto within = [](double v) { return std::abs(v) <= kMost; };  // false for NaN
-  for (std::size_t i = 0; i < state_.positions.size(); ++i) {
-    const bool good = within(state_.positions.x[i]) && within(state_.positions.y[i]) && within(state_.positions.z[i]) &&
-                      within(state_.velocities.x[i]) && within(state_.velocities.y[i]) &&
-                      within(state_.velocities.z[i]);
-    if (good) continue;
-    state_.positions = good_positions_;
-    state_.velocities = good_velocities_;
-    std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
-    info_.status = Code::diverged;
-    info_.bad_node = static_cast<std::uint32_t>(i);
-    return true;
-  }
-  return false;
+  const auto lost = solver_->lost_node();
+  if (!lost) return false;
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  info_.status = Code::diverged;
+  info_.bad_node = *lost;
+  return true;
+}
+
+VecView Simulation::positions() const noexcept {
+  if (!positions_known_) solver_->read_positions(positions_);
+  positions_known_ = true;
+  return positions_;
+}
+
+VecView Simulation::velocities() const noexcept {
+  if (!velocities_known_) solver_->read_velocities(velocities_);
+  velocities_known_ = true;
+  return velocities_;
+}
+
+VecArray Simulation::forces() const {
+  VecArray forces(network_.node_count());
+  solver_->read_forces(forces);
+  return forces;
 }
 
 void Simulation::reset() noexcept {
-  for (std::size_t i = 0; i < def_.mesh.node_count(); ++i) {
-    state_.positions.set(i, def_.mesh.positions[i]);
-    state_.velocities.set(i, Vec3::Zero());
-    state_.forces.set(i, Vec3::Zero());
-  }
-  state_.stiffnesses = network_.stiffnesses;
+  solver_->reset();
+  forget_copies();
+  stiffnesses_ = network_.stiffnesses;
   std::fill(intact_.begin(), intact_.end(), std::uint8_t{1});
   fading_.clear();
   contacts_.clear();

@@ -4,18 +4,8 @@
 namespace crumble {
 namespace {
 
-constexpr std::uint64_t kSnapshotMagic = 0x3130504e534d5243u;  // "CRMSNP01"
-
-void put(ByteWriter& out, const VecArray& v) {
-  out.put(v.x), out.put(v.y), out.put(v.z);
-}
-
-void get(ByteReader& in, VecArray& v) {
-  const std::size_t n = v.size();
-  v.x = in.get_vector<double>(), v.y = in.get_vector<double>(), v.z = in.get_vector<double>();
-  if (v.x.size() != n || v.y.size() != n || v.z.size() != n)
-    throw Error(Code::corrupt, "snapshot has another node count");
-}
+constexpr std::uint64_t kSnapshotMagic = 0x3230504e534d5243u;  // "CRMSNP" and the version, "02"
+constexpr std::uint64_t kNameOfMagic = 0x0000ffffffffffffu;
 
 void put(ByteWriter& out, const Wrench& w) {
   for (const Vec3& v : {w.force, w.torque}) out.put(v.x()), out.put(v.y()), out.put(v.z());
@@ -48,7 +38,7 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
                            ledger_.gain_max_relative}) {
     out.put(row);
   }
-  put(out, state_.positions), put(out, state_.velocities), put(out, state_.forces);
+  solver_->save(out);
   out.put(intact_);
   out.put(static_cast<std::uint64_t>(fading_.size()));
   for (const Fading& fading : fading_) out.put(fading.spring), out.put(fading.substeps_left);
@@ -64,7 +54,10 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
 
 // The stiffnesses in force follow from what is intact and what is fading.
 void Simulation::load_fading(ByteReader& in) {
-  for (std::size_t s = 0; s < intact_.size(); ++s) state_.stiffnesses[s] = intact_[s] ? network_.stiffnesses[s] : 0;
+  stiffnesses_ = network_.stiffnesses;
+  for (std::uint32_t s = 0; s < intact_.size(); ++s) {
+    if (!intact_[s]) set_share(s, 0);
+  }
   fading_.clear();
   const auto count = in.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -73,13 +66,15 @@ void Simulation::load_fading(ByteReader& in) {
       throw Error(Code::corrupt, "snapshot holds an impossible fading spring");
     }
     fading_.push_back({spring, left});
-    state_.stiffnesses[spring] = network_.stiffnesses[spring] * left / (fade_substeps_ + 1);
+    set_share(spring, static_cast<double>(left) / (fade_substeps_ + 1));
   }
 }
 
 void Simulation::restore(std::span<const std::uint8_t> bytes) {
   ByteReader in(bytes, "snapshot");
-  if (in.get<std::uint64_t>() != kSnapshotMagic) throw Error(Code::corrupt, "snapshot does not begin like one");
+  const auto magic = in.get<std::uint64_t>();
+  if ((magic ^ kSnapshotMagic) & kNameOfMagic) throw Error(Code::corrupt, "snapshot does not begin like one");
+  if (magic != kSnapshotMagic) throw Error(Code::version, "snapshot was written by another version of this library");
   if (in.get<std::uint64_t>() != layout_hash_)
     throw Error(Code::version, "snapshot belongs to another simulation definition");
   ByteReader end(bytes.size() < 8 ? bytes : bytes.last(8), "snapshot");
@@ -105,7 +100,8 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
                       &ledger.gain_max_relative}) {
     *row = in.get<double>();
   }
-  get(in, next.state_.positions), get(in, next.state_.velocities), get(in, next.state_.forces);
+  next.solver_->load(in);
+  next.forget_copies();
   next.intact_ = in.get_vector<std::uint8_t>();
   if (next.intact_.size() != network_.spring_count()) throw Error(Code::corrupt, "snapshot has another spring count");
   next.load_fading(in);
@@ -125,7 +121,7 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
 
 std::uint64_t Simulation::state_hash() const noexcept {
   Hash hash;
-  for (const VecArray* v : {&state_.positions, &state_.velocities}) hash.add(v->x), hash.add(v->y), hash.add(v->z);
+  solver_->add_to(hash);
   hash.add(std::span<const std::uint8_t>(intact_));
   for (const Fading& fading : fading_) hash.add(std::uint64_t{fading.spring} << 32 | fading.substeps_left);
   for (const NodeConstraint& c : contacts_.constraints()) {

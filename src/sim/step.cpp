@@ -8,43 +8,57 @@
 namespace crumble {
 namespace {
 
-// Adds the wall time of `stage` to its place in the profile.
-template <class Stage>
-void timed(double& seconds, Stage&& stage) noexcept {
-  const double start = wall_seconds();
-  stage();
-  seconds += wall_seconds() - start;
-}
+// Wall time between the stages, each to its place in the profile.
+class Laps {
+ public:
+  void end(double& seconds) noexcept {
+    const double now = wall_seconds();
+    seconds += now - last_;
+    last_ = now;
+  }
+  void skip() noexcept { last_ = wall_seconds(); }
+
+ private:
+  double last_ = wall_seconds();
+};
 
 }  // namespace
 
 const StepInfo& Simulation::step(std::span<const Pose> poses) noexcept {
   if (!accept(poses)) return info_;
   begin_step();
+  Laps laps;
   for (std::uint32_t substep = 1; substep <= coefficients_.substeps; ++substep) {
     // (1) the tools go where the hand moved them
-    timed(profile_.move_tool, [&] { move_tools(poses, substep); });
+    move_tools(poses, substep);
+    laps.end(profile_.move_tool);
 
     // (2) nodes that came to lie inside a tool are moved to its surface
     for (std::uint32_t place = 0; place < contacts_.place_count(); ++place) {
-      timed(profile_.find_contacts, [&] { contacts_.find(place, state_.positions); });
-      timed(profile_.project_contacts, [&] { contacts_.project(state_.positions, state_.velocities); });
+      contacts_.find(place, *solver_);
+      laps.end(profile_.find_contacts);
+      contacts_.project(*solver_);
+      laps.end(profile_.project_contacts);
     }
-    if (def_.step.energy_audit) audit_projection();
+    if (def_.step.energy_audit) audit_projection(), laps.skip();
 
-    // (3) the network finds its new positions, Eqs (3) to (5)
     for (std::uint32_t iteration = 0; iteration < def_.step.iterations; ++iteration) {
-      timed(profile_.solve_network, [&] { solve_network(); });
-      if (def_.step.energy_audit) audit_solve();
-    }
+      // (3) the network finds its new positions, Eqs (3) to (5), and on the way the springs that are too long, Eq (8)
+      solve_network();
+      laps.end(profile_.solve_network);
+      if (def_.step.energy_audit) audit_solve(), laps.skip();
 
-    // (4) springs beyond their greatest length are cut, Eq (8)
-    timed(profile_.cut_springs, [&] { cut_springs(); });
-    if (def_.step.energy_audit) audit_cut();
+      // (4) these are cut
+      cut_springs();
+      laps.end(profile_.cut_springs);
+      if (def_.step.energy_audit) audit_cut(), laps.skip();
+    }
   }
   // (5) the forces on the tools are summed for the hand, Eqs (6) and (7)
-  timed(profile_.sum_reaction, [&] { sum_reaction(); });
-  timed(profile_.finish_step, [&] { finish_step(); });
+  sum_reaction();
+  laps.end(profile_.sum_reaction);
+  finish_step();
+  laps.end(profile_.finish_step);
   return info_;
 }
 
@@ -58,31 +72,47 @@ void Simulation::move_tools(std::span<const Pose> poses, std::uint32_t substep) 
 }
 
 void Simulation::solve_network() noexcept {
-  if (def_.step.energy_audit) before_solve_ = state_.positions;
-  solver_.solve(network_, coefficients_, state_, contacts_.constraints());
+  forget_copies();
+  if (def_.step.energy_audit) audit_before_solve();
+  solver_->solve(contacts_.constraints());
 }
 
+// A spring that was found where the forces are worked out has pulled less in this substep already; one that is found
+// after the move will in the next.
 void Simulation::cut_springs() noexcept {
+  const bool after_move = def_.step.cut_test == CutTest::after_move;
+  if (after_move) solver_->find_overlong(def_.material.length_limit);
   const std::uint32_t before = info_.new_cuts;
-  const std::span<std::uint32_t> free_places = std::span(new_cuts_).subspan(before);
   info_.new_cuts += static_cast<std::uint32_t>(
-      crumble::cut_springs(state_.positions, network_.springs, squared_limits_, intact_, free_places));
-  for (const std::uint32_t spring : new_cuts().last(info_.new_cuts - before))
-    fading_.push_back({spring, fade_substeps_ + 1});
+      crumble::cut_springs(solver_->overlong(), intact_, std::span(new_cuts_).subspan(before)));
   fade_cut_springs();
+  for (const std::uint32_t spring : new_cuts().last(info_.new_cuts - before)) {
+    fading_.push_back({spring, fade_substeps_ + after_move});
+    fade(fading_.back());
+  }
+  drop_faded();
 }
 
 // A spring that vanishes at once kicks the hand by up to k l0 (l_p - 1), 0.04 N in the paper's cube and several at a
 // time. Its stiffness goes to 0 in equal parts instead. That only takes energy out, so the theorem holds.
 void Simulation::fade_cut_springs() noexcept {
-  for (Fading& fading : fading_) {
-    --fading.substeps_left;
-    state_.stiffnesses[fading.spring] =
-        network_.stiffnesses[fading.spring] * fading.substeps_left / (fade_substeps_ + 1);
-  }
+  for (Fading& fading : fading_) fade(fading);
+}
+
+void Simulation::fade(Fading& fading) noexcept {
+  if (fading.substeps_left > 0) --fading.substeps_left;
+  set_share(fading.spring, static_cast<double>(fading.substeps_left) / (fade_substeps_ + 1));
+}
+
+void Simulation::drop_faded() noexcept {
   const auto pulling =
       std::find_if(fading_.begin(), fading_.end(), [](const Fading& f) { return f.substeps_left > 0; });
   fading_.erase(fading_.begin(), pulling);
+}
+
+void Simulation::set_share(std::uint32_t spring, double share) noexcept {
+  stiffnesses_[spring] = network_.stiffnesses[spring] * share;
+  solver_->set_share(spring, share);
 }
 
 }  // namespace crumble

@@ -82,6 +82,12 @@ TEST_F(BadInput, NumbersOutOfRange) {
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::time_step_policy, 4u, "time_step_policy");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::contact_rule, 256u, "contact_rule");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::mean_force, 2u, "mean_force");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::precision, 2u, "precision must be at most 1, is 2");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::precision, 7u, "precision");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::threads, 0u, "threads must lie in [1, 64], is 0");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::threads, 65u, "threads must lie in [1, 64], is 65");
+  expect_field(CRUMBLE_E_UNSUPPORTED, &crumble_sim_def::kernel, "abacus", "kernel 'abacus'");
+  expect_field(CRUMBLE_E_UNSUPPORTED, &crumble_sim_def::kernel, "Scalar", "this processor runs scalar");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::iterations, 0u, "iterations");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::iterations, 2u, "iterations");  // the paper's mode only
 }
@@ -274,6 +280,7 @@ TEST_F(BadInput, NullPointers) {
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_get_step_info(sim, nullptr));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_get_counters(sim, nullptr));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_get_profile(sim, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_get_info(sim, nullptr));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_get_view(sim, CRUMBLE_ARRAY_INTACT, nullptr));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_copy(sim, CRUMBLE_ARRAY_INTACT, nullptr, 0, nullptr));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_sim_count_fragments(sim, nullptr));

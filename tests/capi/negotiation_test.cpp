@@ -48,6 +48,26 @@ TEST_F(Negotiation, AnOlderProgramGetsDefaultsForTheRest) {
   ASSERT_OK(crumble_sim_destroy(made));
 }
 
+// crumble_sim_def ended behind `reserved` once.
+TEST_F(Negotiation, AProgramWithoutPrecisionKernelAndThreadsRunsAsItDid) {
+  press(1, 60);
+  const std::uint64_t as_now = hash();
+  ASSERT_OK(crumble_sim_destroy(sim));
+  std::memset(&def.precision, 0xff, sizeof def - offsetof(crumble_sim_def, precision));  // the program's own memory
+  def.struct_size = offsetof(crumble_sim_def, precision);
+  ASSERT_EQ(def.struct_size, 104u);
+  sim = make_sim();
+  press(1, 60);
+  EXPECT_EQ(hash(), as_now);
+  crumble_sim_def full{};
+  full.struct_size = sizeof full;
+  ASSERT_OK(crumble_sim_get_def(sim, &full));
+  EXPECT_EQ(full.precision, std::uint32_t{CRUMBLE_PRECISION_FLOAT64});
+  EXPECT_EQ(full.threads, 1u);
+  EXPECT_EQ(full.kernel, nullptr);
+  EXPECT_EQ(full.host_threads, nullptr);
+}
+
 TEST_F(Negotiation, ANewerProgramIsServedWhileItsNewFieldsAreZero) {
   NewerDef newer;
   std::memset(&newer, 0xff, sizeof newer);
@@ -62,12 +82,12 @@ TEST_F(Negotiation, ANewerProgramIsServedWhileItsNewFieldsAreZero) {
 
   newer.more[2] = 1e-300;
   made = nullptr;
-  expect_failure(CRUMBLE_E_VERSION, crumble_sim_create(mesh, &newer.def, &made), {"crumble_sim_create", "128 bytes"});
+  expect_failure(CRUMBLE_E_VERSION, crumble_sim_create(mesh, &newer.def, &made), {"crumble_sim_create", "160 bytes"});
   EXPECT_EQ(made, nullptr);
 }
 
 TEST_F(Negotiation, SizesThatNoVersionHasAreRefused) {
-  for (const std::uint32_t size : {1u, 4u, 7u, 103u, 105u, 4104u, 0xfffffff8u, 0xffffffffu}) {
+  for (const std::uint32_t size : {1u, 4u, 7u, 103u, 105u, 137u, 4104u, 0xfffffff8u, 0xffffffffu}) {
     crumble_sim_def bad = def;
     bad.struct_size = size;
     crumble_sim made = nullptr;
@@ -89,6 +109,7 @@ TEST_F(Negotiation, AForgottenSizeIsToldApart) {
   crumble_step_info step_info{};
   crumble_counters counters{};
   crumble_profile profile{};
+  crumble_sim_info sim_info{};
   crumble_mesh_info mesh_info{};
   crumble_surface_info surface_info{};
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_mesh_create(&mesh_def, &made_mesh));
@@ -100,6 +121,7 @@ TEST_F(Negotiation, AForgottenSizeIsToldApart) {
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_get_step_info(sim, &step_info));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_get_counters(sim, &counters));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_get_profile(sim, &profile));
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_get_info(sim, &sim_info));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_mesh_get_info(mesh, &mesh_info));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_extract_surface(sim, &surface_info));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_mesh_def_init(&mesh_def, 0));

@@ -49,6 +49,20 @@ TEST(Mesh, MakesEveryShape) {
   EXPECT_NEAR(cylinder.at("volume_m3").get<double>(), pi * 4e-4 * 0.03, 3e-6);
 }
 
+TEST(Mesh, SaysHowMuchOfItIsLattice) {
+  const json relaxed = mesh_json({"box", "0.03", "0.03", "0.03", "--spacing", "0.003"});
+  EXPECT_EQ(relaxed.at("structure"), "relaxed");
+  EXPECT_LT(relaxed.at("lattice_neighbour_share"), 0.2);
+  EXPECT_GT(relaxed.at("share_in_runs_of_4"), 0.75);
+  const json lattice = mesh_json({"box", "0.03", "0.03", "0.03", "--spacing", "0.003", "--structure", "lattice"});
+  EXPECT_EQ(lattice.at("structure"), "lattice");
+  EXPECT_EQ(lattice.at("rows"), 15 * 11);  // 30 mm / (3 mm / sqrt 2) = 14.1 layers high, ten squares and one more row
+  EXPECT_GT(lattice.at("lattice_neighbour_share"), 0.97);
+  EXPECT_LT(lattice.at("lattice_neighbour_share"), 1);
+  EXPECT_GT(lattice.at("share_in_runs_of_4"), 0.99);
+  EXPECT_EQ(mesh_json({"cube", "--structure", "lattice"}).at("structure"), "lattice");
+}
+
 TEST(Mesh, WritesMeshAndSurface) {
   const TemporaryFolder folder;
   const json cube = mesh_json({"cube", "--out", folder.file("cube.vtk").string()});

@@ -76,6 +76,17 @@ TEST_F(RecordingTest, RunsAgainWithTheSameHashes) {
   EXPECT_EQ(replayed.at("identical"), true);
   EXPECT_EQ(std::stoull(replayed.at("state_hash").get<std::string>(), nullptr, 16), hash);
   EXPECT_EQ(replayed.at("cuts"), cuts);
+  EXPECT_EQ(replayed.at("precision"), "float64");
+}
+
+TEST_F(RecordingTest, RunsAgainWithEveryKernelAndNumberOfThreads) {
+  for (const std::string& kernel : kernel_names()) {
+    const Outcome outcome = crumble({"replay", recording, "--kernel", kernel, "--threads", "2", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out).at("kernel"), kernel);
+    EXPECT_EQ(json::parse(outcome.out).at("threads"), 2);
+    EXPECT_EQ(json::parse(outcome.out).at("identical"), true);
+  }
 }
 
 TEST_F(RecordingTest, IsRefusedWhenTruncatedOrDamaged) {

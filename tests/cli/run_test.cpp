@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/ply.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/network/solver.hpp"
 #include "render/temporary_folder.hpp"
 
 namespace crumble::cli {
@@ -46,6 +47,15 @@ TEST(Run, PrintsOneJsonObject) {
   EXPECT_LT(result.at("cuts"), springs);
   EXPECT_GE(result.at("fragments"), 1);
   EXPECT_EQ(result.at("precision"), "float64");
+  const std::vector<std::string> kernels = kernel_names();
+  EXPECT_EQ(std::count(kernels.begin(), kernels.end(), result.at("kernel").get<std::string>()), 1);
+  EXPECT_EQ(result.at("threads"), 1);
+  const json& layout = result.at("layout");
+  EXPECT_GT(layout.at("lane_use"), 0.25);
+  EXPECT_LE(layout.at("lane_use"), 1);
+  EXPECT_GT(layout.at("share_in_segments"), 0.25);
+  EXPECT_LE(layout.at("share_in_segments"), 1);
+  EXPECT_EQ(layout.at("partitions"), 1) << "too small to be shared";
   EXPECT_EQ(result.at("state_hash").get<std::string>().size(), 16u);
 
   const json& force = result.at("force");
@@ -82,6 +92,39 @@ TEST(Run, GivesTheSameHashTwice) {
     result->erase("rate_multiple_of_300hz");
   }
   EXPECT_EQ(first, second);
+}
+
+TEST(Run, GivesTheSameHashWithEveryKernelAndNumberOfThreads) {
+  for (const char* precision : {"float64", "float32"}) {
+    const std::vector<std::string> press{"tofu_cube", "--device",    "press:40", "--seconds",
+                                         "0.4",       "--precision", precision};
+    const json chosen = run_json(press);
+    EXPECT_EQ(chosen.at("precision"), precision);
+    EXPECT_GT(chosen.at("cuts"), 0);
+    for (const std::string& kernel : kernel_names()) {
+      SCOPED_TRACE(kernel + " " + precision);
+      std::vector<std::string> arguments = press;
+      arguments.insert(arguments.end(), {"--kernel", kernel, "--threads", "2"});
+      const json result = run_json(arguments);
+      EXPECT_EQ(result.at("kernel"), kernel);
+      EXPECT_EQ(result.at("threads"), 2);
+      EXPECT_EQ(result.at("state_hash"), chosen.at("state_hash"));
+    }
+  }
+}
+
+// Before the first crack, which would grow from the last bit.
+TEST(Run, SinglePrecisionDiffersByLittle) {
+  const std::vector<std::string> press{"tofu_cube", "--device", "press:10", "--seconds", "0.2"};
+  std::vector<std::string> single = press;
+  single.insert(single.end(), {"--precision", "float32"});
+  const json exact = run_json(press), rough = run_json(single);
+  ASSERT_EQ(exact.at("cuts"), 0);
+  EXPECT_NE(rough.at("state_hash"), exact.at("state_hash"));
+  const double force = exact.at("peak_force_n"), rough_force = rough.at("peak_force_n");
+  EXPECT_NE(rough_force, force);
+  EXPECT_NEAR(rough_force, force, 5e-3 * force);
+  EXPECT_LE(rough.at("energy_gain_max_relative"), 1e-6) << "rounding";
 }
 
 TEST(Run, TakesEveryScene) {
@@ -137,6 +180,8 @@ TEST(Run, WritesEveryFileIntoAFolderItMakes) {
       crumble({"run", "tofu_cube", "--device", "press:20", "--seconds", "1", "--out", out.string()});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("times the 300 Hz"), std::string::npos);
+  EXPECT_NE(outcome.out.find(" kernel, 1 thread: CPU p50"), std::string::npos);
+  EXPECT_NE(outcome.out.find("of the springs in segments"), std::string::npos);
   EXPECT_NE(outcome.out.find((out / "phases.png").string()), std::string::npos);
 
   std::set<std::string> names;
@@ -171,9 +216,11 @@ TEST(Run, ReadsSceneFiles) {
   const TemporaryFolder folder;
   write_text(folder.file("box.json"), R"({
     "description": "a box under a bar", "body": {"box": [0.02, 0.01, 0.02], "spacing": 0.004},
-    "tool": {"bar": [0.006, 0.006, 0.05]}, "start": {}, "motion": {"press": {"speed": 0.02, "depth": 0.004}}})");
+    "tool": {"bar": [0.006, 0.006, 0.05]}, "start": {}, "precision": "float32", "motion": {"press": {"speed": 0.02, "depth": 0.004}}})");
   const json result = run_json({folder.file("box.json").string()});
   EXPECT_EQ(result.at("scene"), "box");
+  EXPECT_EQ(result.at("precision"), "float32");
+  EXPECT_EQ(run_json({folder.file("box.json").string(), "--precision", "float64"}).at("precision"), "float64");
   EXPECT_EQ(result.at("steps"), 201);
   EXPECT_NEAR(result.at("force").back().at("depth_mm").get<double>(), 4, 1e-9);
   EXPECT_GT(result.at("peak_force_n"), 0.01);
@@ -182,9 +229,12 @@ TEST(Run, ReadsSceneFiles) {
 TEST(Version, SaysWhatIsInTheBuild) {
   const Outcome outcome = crumble({"--version"});
   EXPECT_EQ(outcome.code, 0);
-  for (const char* part : {"crumble " CRUMBLE_VERSION, "float64", "reference", "press replay", "tofu_globe_literal"}) {
+  for (const char* part : {"crumble " CRUMBLE_VERSION, "float64 float32", "press replay", "tofu_globe_literal"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
   }
+  std::string kernels = "kernels:";
+  for (const std::string& name : kernel_names()) kernels += " " + name;
+  EXPECT_NE(outcome.out.find(kernels + "\n"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "contact/sticks.hpp"
+#include "crumble/base/reserved_vector.hpp"
+#include "crumble/base/vec_array.hpp"
 #include "crumble/contact/contacts.hpp"
 
 namespace crumble {
@@ -19,26 +21,58 @@ inline Tool bar(double x, double y, double z) {
   return {make_bar({x, y, z}), kPaperFriction};
 }
 
-inline VecArray far_away(std::size_t n) {
-  VecArray nodes(n);
-  for (std::size_t i = 0; i < n; ++i) nodes.set(i, {100, 100, 100});
-  return nodes;
+/// Plain arrays, searched node by node; or, with `culls` off, every search returns all nodes.
+struct NodeArrays : NodeSource {
+  VecArray positions, velocities;
+  bool culls = true;
+
+  NodeArrays() = default;
+  explicit NodeArrays(const std::vector<Vec3>& nodes) : positions(nodes), velocities(nodes.size()) {
+    found_.reserve(nodes.size());
+  }
+  std::size_t node_count() const noexcept override { return positions.size(); }
+  Vec3 position(std::uint32_t node) const noexcept override { return positions[node]; }
+  Vec3 velocity(std::uint32_t node) const noexcept override { return velocities[node]; }
+  void place(std::uint32_t node, const Vec3& position, const Vec3& velocity) noexcept override {
+    positions.set(node, position), velocities.set(node, velocity);
+  }
+  std::span<const std::uint32_t> inside(const Vec3& low, const Vec3& high) noexcept override {
+    return search([&](const Vec3& p) { return p.cwiseMax(low).cwiseMin(high) == p; });
+  }
+  std::span<const std::uint32_t> behind(const Plane& plane) noexcept override {
+    return search([&](const Vec3& p) { return dot(plane.normal, p) < plane.offset; });
+  }
+
+ private:
+  template <class Near>
+  std::span<const std::uint32_t> search(Near&& near) noexcept {
+    found_.clear();
+    for (std::uint32_t i = 0; i < positions.size(); ++i) {
+      if (!culls || near(positions[i])) found_.push_back(i);
+    }
+    return found_;
+  }
+
+  ReservedVector<std::uint32_t> found_;
+};
+
+inline NodeArrays far_away(std::size_t n) {
+  return NodeArrays(std::vector<Vec3>(n, {100, 100, 100}));
 }
 
 struct ContactRig {
   Contacts contacts;
-  VecArray positions, velocities;
+  NodeArrays nodes;
 
-  ContactRig(std::vector<Tool> tools, std::vector<Vec3> nodes, ContactRule rule = ContactRule::nearest_surface,
+  ContactRig(std::vector<Tool> tools, const std::vector<Vec3>& start, ContactRule rule = ContactRule::nearest_surface,
              std::vector<Wall> walls = {}, std::vector<std::uint8_t> fixed = {})
-      : contacts(std::move(tools), std::move(walls), fixed.empty() ? std::vector<std::uint8_t>(nodes.size()) : fixed,
+      : contacts(std::move(tools), std::move(walls), fixed.empty() ? std::vector<std::uint8_t>(start.size()) : fixed,
                  rule),
-        positions(nodes),
-        velocities(nodes.size()) {}
+        nodes(start) {}
 
   /// Puts the tools down while the nodes are elsewhere, so that they are engaged wherever the nodes are.
   void engage(const std::vector<Pose>& poses) {
-    const VecArray elsewhere = far_away(positions.size());
+    NodeArrays elsewhere = far_away(nodes.node_count());
     for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_tool(t, poses[t], kTau);
     contacts.find(0, elsewhere);
   }
@@ -47,8 +81,8 @@ struct ContactRig {
   void touch(const std::vector<Pose>& poses) noexcept {
     for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_tool(t, poses[t], kTau);
     for (std::uint32_t place = 0; place < contacts.place_count(); ++place) {
-      contacts.find(place, positions);
-      contacts.project(positions, velocities);
+      contacts.find(place, nodes);
+      contacts.project(nodes);
     }
   }
 
@@ -69,10 +103,10 @@ struct ContactRig {
   double greatest_depth(std::size_t tool) const {
     const Frame frame(contacts.pose(tool));
     double greatest = -1;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < nodes.node_count(); ++i) {
       std::uint32_t face = 0;
-      greatest = std::max(greatest,
-                          -greatest_plane_distance(contacts.tools()[tool].shape, frame.to_local(positions[i]), face));
+      greatest = std::max(
+          greatest, -greatest_plane_distance(contacts.tools()[tool].shape, frame.to_local(nodes.positions[i]), face));
     }
     return greatest;
   }

@@ -38,7 +38,7 @@ TEST(Contacts, NearestRulePushesEachNodeToTheNearestFace) {
         const double depth = plane.offset - n.dot(before - pose.position);
         if (depth < least) least = depth, normal = n, nearest = before + depth * n;
       }
-      EXPECT_LT(norm(rig.positions[c.node] - nearest), 1e-14) << stick.name;
+      EXPECT_LT(norm(rig.nodes.positions[c.node] - nearest), 1e-14) << stick.name;
       EXPECT_LT(norm(c.point - nearest), 1e-14);
       EXPECT_LT(norm(c.normal - normal), 1e-14);
       EXPECT_EQ(c.state, ContactState::fresh);
@@ -62,11 +62,11 @@ TEST(Contacts, PaperRulePushesEachNodeAlongTheToolsMotion) {
     rig.touch({after});
     ASSERT_EQ(rig.contacts.constraints().size(), nodes.size());
     for (const NodeConstraint& c : rig.contacts.constraints()) {
-      const Vec3 node = nodes[c.node], move = rig.positions[c.node] - node;
+      const Vec3 node = nodes[c.node], move = rig.nodes.positions[c.node] - node;
       const Vec3 local = after.orientation.conjugate() * (node - after.position);
       const Vec3 motion = node - (before.orientation * local + before.position);  // of the tool's matter at the node
       EXPECT_GT(move.dot(motion), 0.999999999 * move.norm() * motion.norm()) << stick.name;
-      const Vec3 out = Frame(after).to_local(rig.positions[c.node]);
+      const Vec3 out = Frame(after).to_local(rig.nodes.positions[c.node]);
       std::uint32_t face = 0;
       EXPECT_NEAR(greatest_plane_distance(stick.shape, out, face), 0, 1e-14);
       EXPECT_LT(norm(c.normal - after.orientation * stick.shape.planes[face].normal), 1e-12);
@@ -82,7 +82,7 @@ TEST(Contacts, StickingNodeFollowsAMovingAndTurningToolWithoutDrift) {
   ContactRig rig({tool}, {Frame(pose).to_scene(local)});
   rig.engage({pose});
   rig.touch({pose});
-  const Vec3 anchor = pose.orientation.conjugate() * (rig.positions[0] - pose.position);
+  const Vec3 anchor = pose.orientation.conjugate() * (rig.nodes.positions[0] - pose.position);
   rig.decide(ContactState::stick);
   for (int step = 0; step < 10000; ++step) {
     const double speed = step % 100 == 99 ? 40 : 1;  // now and then in several places
@@ -93,8 +93,8 @@ TEST(Contacts, StickingNodeFollowsAMovingAndTurningToolWithoutDrift) {
     ASSERT_EQ(rig.contacts.constraints().size(), 1u) << step;
     const Vec3 expected = pose.orientation * anchor + pose.position;
     const Vec3 previous = before.orientation * anchor + before.position;
-    ASSERT_LT(norm(rig.positions[0] - expected), 1e-12) << step;
-    ASSERT_LT(norm(rig.velocities[0] - (expected - previous) / kTau), 1e-9) << step;
+    ASSERT_LT(norm(rig.nodes.positions[0] - expected), 1e-12) << step;
+    ASSERT_LT(norm(rig.nodes.velocities[0] - (expected - previous) / kTau), 1e-9) << step;
     rig.decide(ContactState::stick);
   }
 }
@@ -106,16 +106,16 @@ TEST(Contacts, SlippingNodeIsPushedAlongTheNormalOnly) {
   ContactRig rig({bar(0.01, 0.006, 0.05)}, {start.position + 0.0029 * down});
   rig.engage({start});
   rig.touch({start});
-  rig.velocities.set(0, Vec3(0.1, 0.2, 0.3));
+  rig.nodes.velocities.set(0, Vec3(0.1, 0.2, 0.3));
   rig.decide(ContactState::slip);
   for (int step = 1; step <= 50; ++step) {
-    const Vec3 before = rig.positions[0], velocity = rig.velocities[0];
+    const Vec3 before = rig.nodes.positions[0], velocity = rig.nodes.velocities[0];
     rig.touch({{start.position + step * (2e-5 * down + 3e-5 * sideways), start.orientation}});
     ASSERT_EQ(rig.contacts.constraints().size(), 1u);
-    ASSERT_LT(norm(rig.positions[0] - (before + 2e-5 * down)), 1e-15);
-    const Vec3 gained = rig.velocities[0] - velocity;
+    ASSERT_LT(norm(rig.nodes.positions[0] - (before + 2e-5 * down)), 1e-15);
+    const Vec3 gained = rig.nodes.velocities[0] - velocity;
     ASSERT_LT(norm(gained - gained.dot(down) * down), 1e-14) << "the tool dragged it sideways";
-    ASSERT_NEAR(rig.velocities[0].dot(down), 2e-5 / kTau, 1e-9);
+    ASSERT_NEAR(rig.nodes.velocities[0].dot(down), 2e-5 / kTau, 1e-9);
     ASSERT_LT(norm(rig.contacts.constraints()[0].velocity - (2e-5 * down + 3e-5 * sideways) / kTau), 1e-9);
     rig.decide(ContactState::slip);
   }
@@ -125,12 +125,12 @@ TEST(Contacts, NodeThatSlidAndThenSticksIsHeldWhereItCameToRest) {
   ContactRig rig({bar(0.01, 0.006, 0.05)}, {{0, -0.0029, 0}});
   rig.engage({at(0, 0, 0)});
   rig.touch({at(0, 0, 0)});
-  rig.positions.set(0, {0.0001, -0.003, 0.0002});  // slides
+  rig.nodes.positions.set(0, {0.0001, -0.003, 0.0002});  // slides
   rig.decide(ContactState::slip);
   rig.touch({at(0, 0, 0)});
   rig.decide(ContactState::stick);
   rig.touch({at(0.0003, 0.0001, 0)});
-  EXPECT_LT(norm(rig.positions[0] - Vec3(0.0004, -0.0029, 0.0002)), 1e-15);
+  EXPECT_LT(norm(rig.nodes.positions[0] - Vec3(0.0004, -0.0029, 0.0002)), 1e-15);
 }
 
 TEST(Contacts, ReleasedIsForgottenAndHeldOnlyWithinTheKeepGap) {
@@ -140,14 +140,14 @@ TEST(Contacts, ReleasedIsForgottenAndHeldOnlyWithinTheKeepGap) {
     rig.touch({at(0, 0, 0)});
     rig.decide(released ? ContactState::released : ContactState::slip);
     EXPECT_EQ(rig.contacts.constraints().size(), released ? 0u : 1u);
-    rig.positions.set(0, {0, -0.003 - 4e-5, 0});
+    rig.nodes.positions.set(0, {0, -0.003 - 4e-5, 0});
     rig.touch({at(0, 0, 0)});
     EXPECT_EQ(rig.contacts.constraints().size(), released ? 0u : 1u);
     rig.decide(released ? ContactState::released : ContactState::slip);
-    rig.positions.set(0, {0, -0.003 - 6e-5, 0});
+    rig.nodes.positions.set(0, {0, -0.003 - 6e-5, 0});
     rig.touch({at(0, 0, 0)});
     EXPECT_EQ(rig.contacts.constraints().size(), 0u);
-    EXPECT_EQ(rig.positions.y[0], -0.003 - 6e-5);
+    EXPECT_EQ(rig.nodes.positions.y[0], -0.003 - 6e-5);
   }
 }
 
@@ -159,11 +159,11 @@ TEST(Contacts, ReleasedInASubstepIsNotHeldInTheNext) {
   rig.touch({at(0, 0, 0)});
   ASSERT_EQ(rig.contacts.constraints().size(), 2u);
   for (NodeConstraint& c : rig.contacts.constraints()) c.state = ContactState::released;
-  rig.positions.set(0, {0, -0.003 - 1e-5, 0});
-  rig.positions.set(1, {1, -1 + 1e-5, 0});
+  rig.nodes.positions.set(0, {0, -0.003 - 1e-5, 0});
+  rig.nodes.positions.set(1, {1, -1 + 1e-5, 0});
   rig.touch({at(0, 0, 0)});
   EXPECT_TRUE(rig.contacts.constraints().empty());
-  EXPECT_EQ(rig.positions[0], Vec3(0, -0.003 - 1e-5, 0));
+  EXPECT_EQ(rig.nodes.positions[0], Vec3(0, -0.003 - 1e-5, 0));
 }
 
 TEST(Contacts, FixedNodesAreNeverHeld) {
@@ -175,8 +175,8 @@ TEST(Contacts, FixedNodesAreNeverHeld) {
   ASSERT_EQ(rig.contacts.constraints().size(), 2u);
   EXPECT_EQ(rig.contacts.constraints()[0].node, 1u);
   EXPECT_EQ(rig.contacts.constraints()[1].node, 3u);
-  EXPECT_EQ(rig.positions[0], nodes[0]);
-  EXPECT_EQ(rig.positions[2], nodes[2]);
+  EXPECT_EQ(rig.nodes.positions[0], nodes[0]);
+  EXPECT_EQ(rig.nodes.positions[2], nodes[2]);
 }
 
 TEST(Contacts, WallKeepsNodesOnItsSide) {
@@ -186,20 +186,20 @@ TEST(Contacts, WallKeepsNodesOnItsSide) {
   std::vector<Vec3> nodes;
   for (int i = 0; i < 200; ++i) nodes.push_back(0.05 * random_vector(random));
   ContactRig rig({}, nodes, ContactRule::nearest_surface, {wall});
-  for (std::size_t i = 0; i < nodes.size(); ++i) rig.velocities.set(i, {1, 2, 3});
+  for (std::size_t i = 0; i < nodes.size(); ++i) rig.nodes.velocities.set(i, {1, 2, 3});
   rig.touch({});
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     const double above = n.dot(nodes[i]) - 0.02;
     const NodeConstraint* c = rig.contact_of(i);
     ASSERT_EQ(c != nullptr, above < 0);
-    ASSERT_LT(norm(rig.positions[i] - (nodes[i] - std::min(above, 0.0) * n)), 1e-15);
+    ASSERT_LT(norm(rig.nodes.positions[i] - (nodes[i] - std::min(above, 0.0) * n)), 1e-15);
     if (!c) continue;
     EXPECT_EQ(c->holder, kWorldHolder);
     EXPECT_EQ(c->normal, n);
     EXPECT_EQ(c->static_friction, 0.8);
     EXPECT_EQ(c->dynamic_friction, 0.5);
     EXPECT_EQ(c->velocity, Vec3::Zero());
-    EXPECT_NEAR(rig.velocities[i].dot(n), 0, 1e-15);
+    EXPECT_NEAR(rig.nodes.velocities[i].dot(n), 0, 1e-15);
   }
 }
 
@@ -212,13 +212,13 @@ TEST(Contacts, WallHoldsAStickingNodeLetsASlidingOneGoOnAndDropsOneThatRose) {
   rig.contacts.constraints()[1].state = ContactState::slip;
   rig.contacts.constraints()[2].state = ContactState::slip;
   rig.contacts.drop_released();
-  for (std::size_t i = 0; i < 2; ++i) rig.positions.set(i, rig.positions[i] + Vec3(1e-5, 1e-5, 0));
-  rig.positions.set(2, {2, 6e-5, 0});
+  for (std::size_t i = 0; i < 2; ++i) rig.nodes.positions.set(i, rig.nodes.positions[i] + Vec3(1e-5, 1e-5, 0));
+  rig.nodes.positions.set(2, {2, 6e-5, 0});
   rig.touch({});
   ASSERT_EQ(rig.contacts.constraints().size(), 2u);
-  EXPECT_EQ(rig.positions[0], Vec3(0, 0, 0));
-  EXPECT_EQ(rig.positions[1], Vec3(1 + 1e-5, 0, 0));
-  EXPECT_EQ(rig.positions[2], Vec3(2, 6e-5, 0));
+  EXPECT_EQ(rig.nodes.positions[0], Vec3(0, 0, 0));
+  EXPECT_EQ(rig.nodes.positions[1], Vec3(1 + 1e-5, 0, 0));
+  EXPECT_EQ(rig.nodes.positions[2], Vec3(2, 6e-5, 0));
 }
 
 TEST(Contacts, ToolTakesANodeFromAWall) {
@@ -231,7 +231,7 @@ TEST(Contacts, ToolTakesANodeFromAWall) {
   ASSERT_EQ(rig.contacts.constraints().size(), 1u);
   EXPECT_EQ(rig.contacts.constraints()[0].holder, 0u);
   EXPECT_EQ(rig.contacts.constraints()[0].state, ContactState::fresh);
-  EXPECT_EQ(rig.positions[0], Vec3(0, 0.00299 - 0.003, 0));
+  EXPECT_EQ(rig.nodes.positions[0], Vec3(0, 0.00299 - 0.003, 0));
 }
 
 // Two tools that share a region, a wall below, contacts of all states: never two contacts for one node.
@@ -263,7 +263,7 @@ TEST(Contacts, EachNodeHasOneHolderAndTheLowerToolIndexWins) {
     for (NodeConstraint& c : rig.contacts.constraints()) c.state = static_cast<ContactState>(random.below(4));
     rig.contacts.drop_released();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      rig.positions.set(i, rig.positions[i] + 1e-4 * random_vector(random));
+      rig.nodes.positions.set(i, rig.nodes.positions[i] + 1e-4 * random_vector(random));
   }
   EXPECT_GT(taken_over, 10u);
 }
@@ -276,7 +276,7 @@ TEST(Contacts, ClearGoesBackToBeforeTheFirstMove) {
   rig.contacts.clear();
   EXPECT_TRUE(rig.contacts.constraints().empty());
   EXPECT_FALSE(rig.contacts.engaged(0));
-  rig.contacts.find(0, rig.positions);
+  rig.contacts.find(0, rig.nodes);
   EXPECT_TRUE(rig.contacts.constraints().empty()) << "a tool without a place holds nothing";
 }
 

@@ -89,6 +89,32 @@ TEST_P(ConvexOracle, ClosedFormSignedDistance) {
   }
 }
 
+// To the last bit, ties included: points on edges, on the axis and at the centre are as far from several faces.
+TEST_P(ConvexOracle, FastSearchesEqualPlainLoops) {
+  const ConvexPolyhedron& body = stick.shape;
+  for (int i = 0; i < kPoints; ++i) {
+    Vec3 p = random_local_point(stick, random);
+    if (i % 4 == 0) p = body.vertices[random.below(body.vertices.size())];
+    if (i % 4 == 1) p = Vec3(0, 0, i % 8 == 1 ? 0.0 : p.z());
+    std::uint32_t expected = 0, nearest = 0;
+    for (std::uint32_t f = 1; f < body.planes.size(); ++f) {
+      const auto above = [&](std::uint32_t g) { return dot(body.planes[g].normal, p) - body.planes[g].offset; };
+      if (above(f) > above(expected)) expected = f;
+    }
+    const double greatest = greatest_plane_distance(body, p, nearest);
+    ASSERT_EQ(nearest, expected) << p.transpose();
+    ASSERT_EQ(greatest, dot(body.planes[expected].normal, p) - body.planes[expected].offset);
+    if (greatest <= 0) continue;
+    double least = 1;
+    for (const auto& [a, b, c] : body.surface.triangles) {
+      least = std::min(least, norm(p - closest_on_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c])));
+    }
+    ASSERT_NEAR(nearest_surface(body, p).signed_distance, least, kOurs) << p.transpose();
+    ASSERT_GT(nearest_surface(body, p, 0.9 * greatest).signed_distance, 0.9 * greatest);
+    ASSERT_EQ(nearest_surface(body, p, greatest).signed_distance, nearest_surface(body, p).signed_distance);
+  }
+}
+
 TEST_P(ConvexOracle, MprFindsTheSameDepthAndNoShorterWayOut) {
   const double tolerance = kTheirs * stick.shape.half_thickness;
   int compared = 0, inside = 0;

@@ -15,7 +15,7 @@ TEST(ToolMotion, ToolThatStartsInsideHoldsNothingUntilItHasBeenOutside) {
     rig.touch({at(0, y, 0)});
     EXPECT_FALSE(rig.contacts.engaged(0)) << y;
     EXPECT_TRUE(rig.contacts.constraints().empty()) << y;
-    for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_EQ(rig.positions[i], nodes[i]);
+    for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_EQ(rig.nodes.positions[i], nodes[i]);
     rig.decide(ContactState::stick);
   };
   for (const double y : {0.001, 0.0, -0.001, 0.002, 0.0045}) expect_untouched(y);
@@ -24,7 +24,7 @@ TEST(ToolMotion, ToolThatStartsInsideHoldsNothingUntilItHasBeenOutside) {
   EXPECT_TRUE(rig.contacts.constraints().empty());
   rig.touch({at(0, 0.0049, 0)});
   ASSERT_EQ(rig.contacts.constraints().size(), 1u);
-  EXPECT_NEAR(rig.positions.y[2], 0.0019, 1e-15);
+  EXPECT_NEAR(rig.nodes.positions.y[2], 0.0019, 1e-15);
 }
 
 TEST(ToolMotion, ToolThatStartsTouchingIsEngaged) {
@@ -63,13 +63,13 @@ TEST(ToolMotion, JumpBeyondEightHalfThicknessesSuspendsContactUntilOutside) {
     EXPECT_FALSE(rig.contacts.jumped(0));
     EXPECT_FALSE(rig.contacts.engaged(0));
     EXPECT_TRUE(rig.contacts.constraints().empty());
-    EXPECT_EQ(rig.positions[0], Vec3::Zero());
+    EXPECT_EQ(rig.nodes.positions[0], Vec3::Zero());
   }
   rig.touch({at(0.00151, 0, 0)});
   EXPECT_TRUE(rig.contacts.engaged(0));
   rig.touch({at(0.0014, 0, 0)});
   EXPECT_EQ(rig.contacts.constraints().size(), 1u);
-  EXPECT_NEAR(rig.positions.x[0], -0.0001, 1e-15);
+  EXPECT_NEAR(rig.nodes.positions.x[0], -0.0001, 1e-15);
 }
 
 // The tool jumps off to where no node is, so it engages again at once: what stuck to it must stay behind.
@@ -79,11 +79,11 @@ TEST(ToolMotion, JumpLeavesStickingNodesBehind) {
     rig.engage({at(0, 0, 0)});
     rig.touch({at(0, 0, 0)});
     rig.decide(state);
-    const Vec3 held = rig.positions[0];
+    const Vec3 held = rig.nodes.positions[0];
     rig.touch({at(0, 1, 0)});
     EXPECT_TRUE(rig.contacts.jumped(0));
     EXPECT_TRUE(rig.contacts.constraints().empty());
-    EXPECT_EQ(rig.positions[0], held);
+    EXPECT_EQ(rig.nodes.positions[0], held);
   }
 }
 
@@ -118,7 +118,8 @@ TEST(ToolMotion, FastThinToolDoesNotPassItsNodes) {
       rig.touch({pose});
       ASSERT_TRUE(rig.contacts.engaged(0));
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        ASSERT_GT(Frame(pose).to_local(rig.positions[i]).x(), 0.0015 - 1e-12) << per_step << " m per step, node " << i;
+        ASSERT_GT(Frame(pose).to_local(rig.nodes.positions[i]).x(), 0.0015 - 1e-12)
+            << per_step << " m per step, node " << i;
       }
       rig.decide(ContactState::slip);
     }
@@ -159,7 +160,7 @@ TEST(ToolMotion, FastRoundStickMeetsWhatIsOnItsWay) {
 class WanderingStick {
  public:
   WanderingStick(const Stick& stick, ContactRule rule, std::uint64_t seed)
-      : random_(seed), rig_({{stick.shape, kPaperFriction}}, cloud(), rule), home_(rig_.positions) {
+      : random_(seed), rig_({{stick.shape, kPaperFriction}}, cloud(), rule), home_(rig_.nodes.positions) {
     pose_.position = {0, 0.012 + stick.size.z() / 2, 0};
     pose_.orientation = axis_angle(Vec3::UnitX(), M_PI / 2);  // upright
     rig_.touch({pose_});
@@ -175,14 +176,14 @@ class WanderingStick {
       pose_ = renormalized({before.position + 3.5e-5 * direction_, multiply(turn, before.orientation)});
       const double travel = greatest_travel(before);
       EXPECT_LT(travel, 50e-6);
-      const VecArray from = rig_.positions;
+      const VecArray from = rig_.nodes.positions;
       rig_.touch({pose_});
       if (step % 10 == 0) {
         EXPECT_LT(rig_.greatest_depth(0), 1e-12) << "a node is left inside in step " << step;
       }
       contacts_ += rig_.contacts.constraints().size();
       for (std::size_t i = 0; i < from.size(); ++i)
-        greatest = std::max(greatest, norm(rig_.positions[i] - from[i]) - travel);
+        greatest = std::max(greatest, norm(rig_.nodes.positions[i] - from[i]) - travel);
       solve();
     }
     return greatest;
@@ -218,13 +219,14 @@ class WanderingStick {
       stays[c.node] = c.state == ContactState::stick;
       if (c.state != ContactState::slip) continue;
       const Vec3 slide = 1e-5 * random_direction(random_);
-      rig_.positions.set(c.node, rig_.positions[c.node] + slide - dot(slide, c.normal) * c.normal);
+      rig_.nodes.positions.set(c.node, rig_.nodes.positions[c.node] + slide - dot(slide, c.normal) * c.normal);
       stays[c.node] = true;
     }
     rig_.contacts.drop_released();
     for (std::size_t i = 0; i < home_.size(); ++i) {
-      const Vec3 way = home_[i] - rig_.positions[i];
-      if (!stays[i] && norm(way) > 0) rig_.positions.set(i, rig_.positions[i] + std::min(1.0, 1e-5 / norm(way)) * way);
+      const Vec3 way = home_[i] - rig_.nodes.positions[i];
+      if (!stays[i] && norm(way) > 0)
+        rig_.nodes.positions.set(i, rig_.nodes.positions[i] + std::min(1.0, 1e-5 / norm(way)) * way);
     }
   }
 
@@ -258,7 +260,7 @@ TEST(ToolMotion, PaperRuleTeleportsByMillimetresForAMicrometreOfTravel) {
     ContactRig rig({bar(0.006, 0.05, 0.006)}, {{0.003 - 1e-7, -0.018, 0}}, rule);
     rig.engage({at(0, 1e-6, 0)});
     rig.touch({at(0, 0, 0)});
-    const double move = norm(rig.positions[0] - Vec3(0.003 - 1e-7, -0.018, 0));
+    const double move = norm(rig.nodes.positions[0] - Vec3(0.003 - 1e-7, -0.018, 0));
     if (rule == ContactRule::nearest_surface) {
       EXPECT_NEAR(move, 1e-7, 1e-15);
     } else {

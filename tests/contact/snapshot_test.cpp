@@ -44,7 +44,7 @@ struct Kneading {
       c.state = static_cast<ContactState>(dice.below(10) == 0 ? 3 : 1 + dice.below(2));
       if (c.state != ContactState::stick) {
         const Vec3 slide = 2e-5 * random_vector(dice);
-        rig.positions.set(c.node, rig.positions[c.node] + slide - dot(slide, c.normal) * c.normal);
+        rig.nodes.positions.set(c.node, rig.nodes.positions[c.node] + slide - dot(slide, c.normal) * c.normal);
       }
       c.reaction = random_vector(dice);
     }
@@ -81,8 +81,10 @@ std::optional<Code> code_of_load(std::span<const std::uint8_t> bytes) {
 
 void expect_same(const Kneading& a, const Kneading& b) {
   const auto same = [](const Vec3& u, const Vec3& v) { return std::memcmp(u.data(), v.data(), sizeof(Vec3)) == 0; };
-  for (std::size_t i = 0; i < a.rig.positions.size(); ++i) {
-    ASSERT_TRUE(same(a.rig.positions[i], b.rig.positions[i]) && same(a.rig.velocities[i], b.rig.velocities[i])) << i;
+  for (std::size_t i = 0; i < a.rig.nodes.positions.size(); ++i) {
+    ASSERT_TRUE(same(a.rig.nodes.positions[i], b.rig.nodes.positions[i]) &&
+                same(a.rig.nodes.velocities[i], b.rig.nodes.velocities[i]))
+        << i;
   }
   const auto left = a.rig.contacts.constraints(), right = b.rig.contacts.constraints();
   ASSERT_EQ(left.size(), right.size());
@@ -99,8 +101,8 @@ TEST(ContactSnapshot, ContinuesWithTheSameBits) {
   for (const auto& [steps, jumped] :
        {std::pair{0, false}, {1, false}, {120, false}, {150, true}, {151, true}, {280, false}}) {
     Kneading live = kneaded(steps), restored;
-    restored.rig.positions = live.rig.positions;
-    restored.rig.velocities = live.rig.velocities;
+    restored.rig.nodes.positions = live.rig.nodes.positions;
+    restored.rig.nodes.velocities = live.rig.nodes.velocities;
     const std::vector<std::uint8_t> bytes = live.saved();
     restored.load(bytes);
     EXPECT_EQ(restored.saved(), bytes);
@@ -119,6 +121,14 @@ TEST(ContactSnapshot, ContinuesWithTheSameBits) {
     }
     EXPECT_GT(contacts, 200u);
   }
+}
+
+TEST(ContactSnapshot, RestoredToolStandsStillUntilItIsMoved) {
+  Kneading restored;
+  restored.load(kneaded(200).saved());
+  restored.rig.contacts.find(0, restored.rig.nodes);
+  ASSERT_FALSE(restored.rig.contacts.constraints().empty());
+  for (const NodeConstraint& c : restored.rig.contacts.constraints()) ASSERT_EQ(c.velocity, Vec3::Zero());
 }
 
 TEST(ContactSnapshot, EveryTruncationIsCorrupt) {
@@ -188,9 +198,9 @@ TEST(ContactSnapshot, FlippedBytesAreRefusedOrHarmless) {
     }
     const AllocationCounter allocations;
     for (int i = 200; i < 203; ++i)
-      damaged.rig.contacts.find(0, damaged.rig.positions), damaged.rig.contacts.drop_released();
+      damaged.rig.contacts.find(0, damaged.rig.nodes), damaged.rig.contacts.drop_released();
     ASSERT_EQ(allocations.count(), 0u);
-    std::vector<bool> seen(damaged.rig.positions.size());
+    std::vector<bool> seen(damaged.rig.nodes.positions.size());
     for (const NodeConstraint& c : damaged.rig.contacts.constraints()) {
       ASSERT_FALSE(seen[c.node]);
       seen[c.node] = true;

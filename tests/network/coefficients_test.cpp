@@ -37,20 +37,15 @@ TEST(Coefficients, OneNodeUnderConstantForceIsExact) {
   for (const double drag : {0.0, 1e-6, 0.01, 2.2, 1e4}) {
     const double mass = 4.5e-5, tau = 1e-3, force = 0.7, v0 = -0.3;
     TwoNodes pair(mass, drag, 1, 1);
-    pair.state.stiffnesses[0] = 0;
-    pair.state.external.x[1] = force;
-    pair.state.velocities.x[1] = v0;
-    const StepCoefficients c =
-        make_coefficients(pair.network, tau, drag > 0 ? TimeStepPolicy::unchecked : TimeStepPolicy::guard);
-    StepCoefficients exact_drag = c;
-    if (drag == 0)
-      exact_drag = [&] {  // the guard would add drag for the (cut) spring
-        pair.network.stiffness_sums = {0, 0};
-        return make_coefficients(pair.network, tau, TimeStepPolicy::guard);
-      }();
-    ExponentialSolver solver(2);
+    if (drag == 0) pair.network.stiffness_sums = {0, 0};  // else the guard would add drag for the (cut) spring
+    const auto solver = pair.solver(tau, drag > 0 ? TimeStepPolicy::unchecked : TimeStepPolicy::guard);
+    VecArray external(2);
+    external.x[1] = force;
+    solver->set_external(external);
+    solver->set_share(0, 0);
+    solver->place(1, Vec3::UnitX(), v0 * Vec3::UnitX());
     const int steps = 50;
-    for (int i = 0; i < steps; ++i) solver.solve(pair.network, exact_drag, pair.state, {});
+    for (int i = 0; i < steps; ++i) solver->solve({});
     const long double t = steps * static_cast<long double>(tau), g = drag / static_cast<long double>(mass);
     const long double v = drag == 0 ? v0 + force / static_cast<long double>(mass) * t
                                     : force / static_cast<long double>(drag) +
@@ -58,8 +53,8 @@ TEST(Coefficients, OneNodeUnderConstantForceIsExact) {
     const long double x = drag == 0 ? 1 + v0 * t + force / static_cast<long double>(mass) * t * t / 2
                                     : 1 + force / static_cast<long double>(drag) * t -
                                           (v0 - force / static_cast<long double>(drag)) * std::expm1(-g * t) / g;
-    EXPECT_NEAR(pair.state.velocities.x[1], static_cast<double>(v), 1e-12 * std::abs(static_cast<double>(v))) << drag;
-    EXPECT_NEAR(pair.state.positions.x[1], static_cast<double>(x), 1e-12 * std::abs(static_cast<double>(x))) << drag;
+    EXPECT_NEAR(solver->velocity(1).x(), static_cast<double>(v), 1e-12 * std::abs(static_cast<double>(v))) << drag;
+    EXPECT_NEAR(solver->position(1).x(), static_cast<double>(x), 1e-12 * std::abs(static_cast<double>(x))) << drag;
   }
 }
 
@@ -67,12 +62,10 @@ TEST(Coefficients, OneNodeUnderConstantForceIsExact) {
 TEST(Coefficients, TwoNodesFollowTheMatrixPower) {
   const double mass = 4.5e-5, drag = 2.2, stiffness = 30, rest = 0.0044, tau = 1e-3;
   TwoNodes pair(mass, drag, stiffness, rest);
-  pair.state.positions.x[1] = rest + 0.001;
-  pair.state.velocities.x[1] = 0.02;
-  const StepCoefficients c = make_coefficients(pair.network, tau, TimeStepPolicy::error);
-  ExponentialSolver solver(2);
+  const auto solver = pair.solver(tau, TimeStepPolicy::error);
+  solver->place(1, {rest + 0.001, 0, 0}, {0.02, 0, 0});
   const int steps = 40;
-  for (int i = 0; i < steps; ++i) solver.solve(pair.network, c, pair.state, {});
+  for (int i = 0; i < steps; ++i) solver->solve({});
 
   using Long = long double;
   const Long g = Long{drag} * tau / mass, p1 = -std::expm1(-g) / g, p2 = (1 - p1) / g;
@@ -86,18 +79,17 @@ TEST(Coefficients, TwoNodesFollowTheMatrixPower) {
     return (q1 * (m - diagonal * l2) - q2 * (m - diagonal * l1)) / (l1 - l2);
   };
   const Long u0 = Long{rest} + 0.001L - rest, v0 = 0.02L;
-  EXPECT_NEAR(pair.state.positions.x[1] - rest, static_cast<double>(power(a, 1) * u0 + power(b, 0) * v0), 1e-12 * rest);
-  EXPECT_NEAR(pair.state.velocities.x[1], static_cast<double>(power(d, 0) * u0 + power(e, 1) * v0), 1e-12 * 0.02);
+  EXPECT_NEAR(solver->position(1).x() - rest, static_cast<double>(power(a, 1) * u0 + power(b, 0) * v0), 1e-12 * rest);
+  EXPECT_NEAR(solver->velocity(1).x(), static_cast<double>(power(d, 0) * u0 + power(e, 1) * v0), 1e-12 * 0.02);
 }
 
 bool stays_bounded(double mass, double drag, double tau, double stiffness) {
-  TwoNodes pair(mass, drag, stiffness, 1);
-  pair.state.positions.x[1] = 1 + 1e-9;
-  const StepCoefficients c = make_coefficients(pair.network, tau, TimeStepPolicy::unchecked);
-  ExponentialSolver solver(2);
+  const TwoNodes pair(mass, drag, stiffness, 1);
+  const auto solver = pair.solver(tau, TimeStepPolicy::unchecked);
+  solver->place(1, {1 + 1e-9, 0, 0}, Vec3::Zero());
   for (int i = 0; i < 20000; ++i) {
-    solver.solve(pair.network, c, pair.state, {});
-    if (std::abs(pair.state.positions.x[1] - 1) > 1e-7) return false;
+    solver->solve({});
+    if (std::abs(solver->position(1).x() - 1) > 1e-7) return false;
   }
   return true;
 }
@@ -116,7 +108,7 @@ TEST(Stability, FormulaAgreesWithBisectedSimulations) {
 
 TEST(Stability, GreatestEigenvalueOfOneSpringBetweenFreeNodes) {
   TwoNodes pair(1, 1, 30, 1);
-  EXPECT_NEAR(largest_eigenvalue(pair.network, pair.state), 60, 1e-6);
+  EXPECT_NEAR(largest_eigenvalue(pair.network, pair.rest), 60, 1e-6);
 }
 
 TEST(Coefficients, PoliciesAnswerALongTimeStep) {

@@ -1,13 +1,15 @@
 // The smallest network: a fixed node at the origin and a free one on the x axis, with a spring between them.
 #pragma once
 
+#include <vector>
+
 #include "crumble/network/solver.hpp"
 
 namespace crumble {
 
 struct TwoNodes {
   SpringNetwork network;
-  NetworkState state;
+  std::vector<Vec3> rest;
 
   TwoNodes(double mass, double drag, double stiffness, double rest_length) {
     network.springs = {{0, 1}};
@@ -17,10 +19,18 @@ struct TwoNodes {
     network.drags = {drag, drag};
     network.stiffness_sums = {stiffness, stiffness};
     network.fixed = {1, 0};
-    state.positions = state.velocities = state.forces = state.external = VecArray(2);
-    state.positions.x[1] = rest_length;
-    state.stiffnesses = {stiffness};
+    rest = {Vec3::Zero(), {rest_length, 0, 0}};
+  }
+  std::unique_ptr<NetworkSolver> solver(double tau, TimeStepPolicy policy) const {
+    return NetworkSolver::make(network, make_coefficients(network, tau, policy), rest, {});
   }
 };
+
+/// Forces by node, worked out anew.
+inline VecArray forces_of(const NetworkSolver& solver) {
+  VecArray forces(solver.node_count());
+  solver.read_forces(forces);
+  return forces;
+}
 
 }  // namespace crumble

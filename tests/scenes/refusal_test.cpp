@@ -24,6 +24,7 @@ const json kGood = json::parse(R"({
   "gravity": [0, -1, 0],
   "walls": [{"normal": [0, 2, 0], "offset": -0.1, "friction": {"static": 0.4, "dynamic": 0.3}}],
   "tool": {"bar": [0.004, 0.004, 0.03], "friction": {"static": 0.5, "dynamic": 0.4}},
+  "precision": "float32",
   "start": {"clearance": 0.001, "x": 0.002, "z": -0.003},
   "motion": {"press": {"speed": 0.002, "depth": 0.01}}
 })");
@@ -78,6 +79,7 @@ TEST(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.def.material.length_limit, 1.2);
   EXPECT_EQ(scene.def.material.mass, 0.01);
   EXPECT_EQ(scene.def.gravity, Vec3(0, -1, 0));
+  EXPECT_EQ(scene.def.step.precision, Precision::float32);
   ASSERT_EQ(scene.def.walls.size(), 1u);
   EXPECT_EQ(scene.def.walls[0].plane.normal, Vec3::UnitY());
   EXPECT_EQ(scene.def.walls[0].plane.offset, -0.1);
@@ -143,13 +145,17 @@ TEST(SceneFile, RefusesMissingKeys) {
 }
 
 TEST(SceneFile, RefusesWrongTypes) {
-  const std::array<Mistake, 12> mistakes{{
+  const std::array<Mistake, 16> mistakes{{
+      {"/precision", R"("float16")", Code::format, {"precision must be float64 or float32, is float16"}},
+      {"/precision", "32", Code::format, {"precision must be a text, is 32"}},
       {"/description", "7", Code::format, {"description must be a text, is 7"}},
       {"/body", "[1, 2]", Code::format, {"body must be an object, is [1,2]"}},
       {"/body/box", "[0.03, 0.03]", Code::format, {"body.box must be three numbers, is [0.03,0.03]"}},
       {"/body/box", R"([0.03, 0.03, "a"])", Code::format, {"body.box must be three numbers", "\"a\""}},
       {"/body/spacing", R"("small")", Code::format, {"body.spacing must be a number, is \"small\""}},
       {"/body/spacing", "null", Code::format, {"body.spacing must be a number, is null"}},
+      {"/body/structure", R"("crystal")", Code::format, {"body.structure must be relaxed or lattice, is crystal"}},
+      {"/body/structure", "1", Code::format, {"body.structure must be a text, is 1"}},
       {"/body/surface_nodes", "10.5", Code::format, {"body.surface_nodes must be a whole number, is 10.5"}},
       {"/body/surface_nodes", "-3", Code::format, {"body.surface_nodes must be a whole number, is -3"}},
       {"/walls", R"({"normal": 1})", Code::format, {"walls must be a list, is {\"normal\":1}"}},

@@ -122,7 +122,7 @@ void print_time_steps() {
     std::printf("%-44s certified %.2f ms", rule == MassRule::lumped ? "lumped masses" : "equal masses",
                 1e3 * rig.sim.coefficients().certified_time_step);
     if (rule == MassRule::equal) {
-      const double eigenvalue = largest_eigenvalue(network, make_rest_state(rig.sim.mesh(), network));
+      const double eigenvalue = largest_eigenvalue(network, rig.sim.mesh().positions);
       std::printf(", linear limit %.2f ms, greatest eigenvalue %.2f k, drag %.2f N s/m",
                   1e3 * linear_limit(eigenvalue, network.drags[0], network.masses[0]), eigenvalue / 30,
                   network.drags[0]);

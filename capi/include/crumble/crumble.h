@@ -51,8 +51,12 @@ typedef int32_t crumble_result;
 CRUMBLE_API uint32_t crumble_version(void);
 /* The same as "major.minor.patch"; static text. [any] */
 CRUMBLE_API const char *crumble_version_string(void);
-/* One line for bug reports: version, source revision, compiler, arithmetic. Static text. [any] */
+/* One line for bug reports: version, source revision, compiler, kernels. Static text. [any] */
 CRUMBLE_API const char *crumble_build_info(void);
+/* The kernels, versions of the solver's inner loops for one processor family or another, that this library holds and
+ * this processor runs: number `index`, from 0, slowest first, and NULL when there are no more. All give the same bits.
+ * Static text. [any] */
+CRUMBLE_API const char *crumble_kernel_name(uint32_t index);
 /* Whether a program compiled with the header of version `header_version` (pass CRUMBLE_VERSION_NUMBER) can use this
  * library: same major version, and same minor version while the major one is 0. Else CRUMBLE_E_VERSION. [any] */
 CRUMBLE_API crumble_result crumble_check_version(uint32_t header_version);
@@ -90,7 +94,7 @@ enum {
   CRUMBLE_E_DIVERGED = -27, /* the body left the world and stands still until crumble_sim_reset */
   CRUMBLE_E_STATE = -28,    /* the call does not fit what the object is doing */
   CRUMBLE_E_UNSUPPORTED = -29,
-  CRUMBLE_E_INTERNAL = -30 /* a defect of the library; please report it with crumble_last_error() */
+  CRUMBLE_E_INTERNAL = -30 /* no thread from the system; else a defect: please report it with crumble_last_error() */
 };
 
 /* What went wrong in the calling thread's last call that failed, as "function: field and value"; "" before the first
@@ -124,8 +128,9 @@ enum {
   CRUMBLE_ARRAY_TETRAHEDRA = 4,     /* (tetrahedra, 4) uint32 nodes; positive volume in this order */
   CRUMBLE_ARRAY_SPRINGS = 5,        /* (springs, 2) uint32 nodes, first < second, ascending */
   CRUMBLE_ARRAY_BOUNDARY = 6,       /* (triangles, 3) uint32 nodes, counter-clockwise from outside */
-  /* Of a simulation, as the last step left it. The solver keeps one array per axis; POSITIONS and VELOCITIES put the
-   * three together and exist as copies only. */
+  /* Of a simulation, as the last step left it. The library keeps one array per axis; POSITIONS and VELOCITIES put the
+   * three together and exist as copies only. The first view or copy of either after a step fetches it from the solver,
+   * once for all nodes and axes. */
   CRUMBLE_ARRAY_POSITIONS = 16,   /* (nodes, 3) float64, m; copy only */
   CRUMBLE_ARRAY_POSITIONS_X = 17, /* (nodes) float64, m */
   CRUMBLE_ARRAY_POSITIONS_Y = 18,
@@ -227,6 +232,15 @@ enum {
   CRUMBLE_POLICY_UNCHECKED = 3 /* the paper's way: nothing */
 };
 enum { CRUMBLE_CONTACT_NEAREST_SURFACE = 0, CRUMBLE_CONTACT_ALONG_MOTION = 1 };
+enum {
+  CRUMBLE_PRECISION_FLOAT64 = 0,
+  CRUMBLE_PRECISION_FLOAT32 = 1 /* faster; arrays are float64 all the same */
+};
+
+/* Runs task(data, i) for every i from 0 to count - 1, in any order and on any threads, and returns when all are done.
+ * What the caller wrote before, the tasks see; what they wrote, the caller sees. `context` is the host's own. */
+typedef void (*crumble_parallel_for)(void *context, uint32_t count, void (*task)(void *data, uint32_t index),
+                                     void *data);
 
 /* What a simulation is, apart from its mesh, tools, walls and fixed nodes. The defaults are a tofu of the paper's best
  * parameters on a smooth floor, with the library's best behaviour. */
@@ -246,6 +260,12 @@ typedef struct crumble_sim_def {
   double cut_fade;           /* time in which the force of a cut spring goes to 0, s; [0, 1]; default 0.004 */
   uint32_t mean_force;       /* 1: report the mean of the last five forces, Eq (7); default 0 */
   uint32_t reserved;         /* keep 0 */
+  uint32_t precision;        /* CRUMBLE_PRECISION_: how the solver holds its numbers; default float64 */
+  /* The rest changes no bit of what comes out. */
+  uint32_t threads;   /* that share a step of a body of 50 000 springs or more; [1, 64]; default 1 */
+  const char *kernel; /* of crumble_kernel_name; copied; NULL (default): $CRUMBLE_KERNEL, else the fastest */
+  crumble_parallel_for host_threads; /* the host's threads share a step instead of `threads` of ours; default NULL */
+  void *host_context;                /* given to host_threads */
 } crumble_sim_def;
 
 enum { CRUMBLE_TOOL_STICK = 0, CRUMBLE_TOOL_BAR = 1, CRUMBLE_TOOL_MESH = 2 };
@@ -332,6 +352,19 @@ typedef struct crumble_profile {
   double finish_step;
 } crumble_profile;
 
+/* How the body was laid out for the solver. Springs that repeat along the rows of a crystal stand in segments, the
+ * others in batches of 8 that share no node. */
+typedef struct crumble_sim_info {
+  uint32_t struct_size;
+  uint32_t kernel;              /* in use; a number for crumble_kernel_name */
+  uint32_t springs_in_segments; /* of the mesh's spring_count; the others stand in batches */
+  uint32_t lanes;               /* places for springs, filled or not: spring_count / lanes is the lane use */
+  uint32_t segments;
+  uint32_t batches;
+  uint32_t partitions; /* pieces that threads can share: so many work at once, at most */
+  uint32_t sorted;     /* 1: the solver numbers the nodes its own way, since their order was not a good one */
+} crumble_sim_info;
+
 typedef struct crumble_surface_info {
   uint32_t struct_size;
   uint32_t vertex_count;
@@ -350,7 +383,8 @@ CRUMBLE_API crumble_result crumble_wall_def_init(crumble_wall_def *def, uint32_t
 /* A simulation of a body at rest, without tools and fixed nodes. `def` may be NULL: defaults. The mesh may be destroyed
  * afterwards.
  * CRUMBLE_E_INVALID_VALUE and _OUT_OF_RANGE (the text names the field), _UNINITIALIZED, _VERSION, _DT_TOO_LARGE (tau),
- * _NO_MEMORY. [one] in the mesh */
+ * _UNSUPPORTED (a kernel that is not there; the text names those that are), _INTERNAL (the system gives no more
+ * threads), _NO_MEMORY. [one] in the mesh */
 CRUMBLE_API crumble_result crumble_sim_create(crumble_mesh mesh, const crumble_sim_def *def, crumble_sim *sim);
 /* NULL is allowed and does nothing. [one] */
 CRUMBLE_API crumble_result crumble_sim_destroy(crumble_sim sim);
@@ -358,8 +392,8 @@ CRUMBLE_API crumble_result crumble_sim_destroy(crumble_sim sim);
 /* Set-up. The functions of this group rebuild the simulation. They are for the time before its first step, or after
  * crumble_sim_reset, and outside a recording: CRUMBLE_E_STATE else. All: CRUMBLE_E_NO_MEMORY. [one] */
 
-/* What the simulation was made with, changed by what was called since. CRUMBLE_E_UNINITIALIZED, _VERSION. At any
- * time. [one] */
+/* What the simulation was made with, changed by what was called since; `kernel` is static text.
+ * CRUMBLE_E_UNINITIALIZED, _VERSION. At any time. [one] */
 CRUMBLE_API crumble_result crumble_sim_get_def(crumble_sim sim, crumble_sim_def *def);
 /* Another definition: material, gravity, floor, step. Errors as crumble_sim_create. [one] */
 CRUMBLE_API crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def *def);
@@ -384,7 +418,8 @@ CRUMBLE_API crumble_result crumble_sim_apply_paper_preset(crumble_sim sim);
 
 /* One tick of the servo loop for a simulation with exactly one tool: the tool goes to `pose`, the body answers, time
  * advances by tau, `wrench` receives what the body does to the tool. Never allocates (except while recording), locks,
- * waits or calls the system.
+ * waits or calls the system; but with `threads` above 1 it wakes sleeping threads and waits for those at work, and it
+ * calls host_threads, which must not throw and must not call into the same simulation (CRUMBLE_E_BUSY).
  * On every error *wrench is zero, so that a loop that ignores results pushes nobody. CRUMBLE_E_BAD_POSE (the body and
  * its time stand still in this call; counted in crumble_counters), _DIVERGED (the body left the world: it is frozen at
  * its last good state, and every further step says so until crumble_sim_reset), _OUT_OF_RANGE (another number of
@@ -398,6 +433,8 @@ CRUMBLE_API crumble_result crumble_sim_step_tools(crumble_sim sim, const crumble
 CRUMBLE_API crumble_result crumble_sim_get_step_info(crumble_sim sim, crumble_step_info *info);
 CRUMBLE_API crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters *counters);
 CRUMBLE_API crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile *profile);
+/* How steps are computed. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_info(crumble_sim sim, crumble_sim_info *info);
 
 /* Back to rest, unbroken, at time 0, with tools unplaced and counters at 0; also after CRUMBLE_E_DIVERGED.
  * CRUMBLE_E_STATE (recording). [one] */
@@ -419,13 +456,14 @@ CRUMBLE_API crumble_result crumble_sim_count_fragments(crumble_sim sim, uint32_t
  * CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size), _NO_MEMORY. [one] */
 CRUMBLE_API crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info *info);
 
-/* All that the future depends on, as bytes: a simulation of the same definition that restores them goes on with the
- * same bits. The size changes from step to step. `dst`, `dst_bytes`, `needed` as in crumble_sim_copy.
- * CRUMBLE_E_BUFFER_TOO_SMALL, _NO_MEMORY. [one] */
+/* All that the future depends on, as bytes: a simulation of the same definition (kernel and threads may be others) that
+ * restores them goes on with the same bits. The size changes from step to step. `dst`, `dst_bytes`, `needed` as in
+ * crumble_sim_copy. CRUMBLE_E_BUFFER_TOO_SMALL, _NO_MEMORY. [one] */
 CRUMBLE_API crumble_result crumble_sim_snapshot(crumble_sim sim, void *dst, uint64_t dst_bytes, uint64_t *needed);
-/* CRUMBLE_E_CORRUPT, _VERSION (of another definition), _STATE (recording), _NO_MEMORY. [one] */
+/* CRUMBLE_E_CORRUPT, _VERSION (of another definition or version of the library), _STATE (recording), _NO_MEMORY.
+ * [one] */
 CRUMBLE_API crumble_result crumble_sim_restore(crumble_sim sim, const void *snapshot, uint64_t bytes);
-/* Hash of the state: equal bits, equal hash, on every machine. [one] */
+/* Hash of the state: equal bits, equal hash, on every machine, with every kernel and any number of threads. [one] */
 CRUMBLE_API crumble_result crumble_sim_state_hash(crumble_sim sim, uint64_t *hash);
 
 /* From here on every step's poses and state hash are kept. CRUMBLE_E_STATE (already recording), _NO_MEMORY. [one] */

@@ -14,6 +14,7 @@
 #include "crumble/base/vec_array.hpp"
 #include "crumble/contact/tool.hpp"
 #include "crumble/tetmesh/node_constraint.hpp"
+#include "crumble/tetmesh/node_source.hpp"
 
 namespace crumble {
 
@@ -29,12 +30,15 @@ class Contacts {
 
   /// Places that stage 2 has to visit for the moves just made; 1 when nothing moves fast.
   std::uint32_t place_count() const noexcept;
-  /// Stage 2, first half: nodes that the tools at place `place` (0-based) and the walls hold.
-  void find(std::uint32_t place, VecView positions) noexcept;
-  /// Stage 2, second half: moves them onto the surface and gives them its normal velocity.
-  void project(VecSpan positions, VecSpan velocities) noexcept;
+  /// Stage 2, first half: nodes that the tools at place `place` (0-based) and the walls hold. Searches `nodes` once for
+  /// each tool and each wall and reads no node that is neither found nor held.
+  void find(std::uint32_t place, NodeSource& nodes) noexcept;
+  /// Stage 2, second half: moves them onto the surface and gives them its normal velocity, and those that stick all of
+  /// its velocity.
+  void project(NodeSource& nodes) noexcept;
 
-  /// For stage 3; in order of holder, then of entry.
+  /// For stage 3; in order of holder, then of entry: those that it held before stay in their order, and what comes in
+  /// follows in the order of the search.
   std::span<NodeConstraint> constraints() noexcept { return constraints_; }
   std::span<const NodeConstraint> constraints() const noexcept { return constraints_; }
   /// At the end of a step: forgets the contacts that the solver released.
@@ -61,7 +65,10 @@ class Contacts {
  private:
   struct Motion {  // of one tool in this substep
     Pose from, to;
-    double tau = 1, travel = 0;
+    Frame from_frame{from}, to_frame{to};
+    Vec3 velocity = Vec3::Zero();  // a point p of the tool moves at velocity + turning p, m/s
+    Mat3 turning = Mat3::Zero();
+    double travel = 0;
     std::uint32_t places = 1;
     bool placed = false, engaged = false, jumped = false;
   };
@@ -69,22 +76,34 @@ class Contacts {
     Vec3 anchor;  // in the holder's frame
     std::uint32_t face = 0;
   };
+  enum class Use : std::uint8_t { free, held, fixed };  // held: named by constraints_
 
-  void find_of_tool(std::uint32_t tool, std::uint32_t place, VecView positions) noexcept;
-  void find_of_walls(VecView positions) noexcept;
+  void find_of_tool(std::uint32_t tool, std::uint32_t place, NodeSource& nodes) noexcept;
+  void keep_on_tool(std::uint32_t tool, const Frame& frame, const NodeSource& nodes) noexcept;
+  void enter_tool(std::uint32_t tool, const Frame& frame, std::span<const std::uint32_t> near,
+                  const NodeSource& nodes) noexcept;
+  bool is_outside(const Tool& tool, const Frame& frame, std::span<const std::uint32_t> near,
+                  const NodeSource& nodes) const noexcept;
+  void find_of_walls(NodeSource& nodes) noexcept;
   bool place_on_tool(const Tool& tool, const Motion& motion, const Frame& frame, double keep_gap, const Vec3& local,
                      Place& place) const noexcept;
-  void add(std::uint32_t node, std::uint32_t holder, ContactState state, const Place& place, const Frame& frame,
-           const Vec3& normal, const Friction& friction) noexcept;
+  void leave_along_motion(const Tool& tool, const Motion& motion, const Frame& frame, const Vec3& local,
+                          Place& place) const noexcept;
+  void hold(std::uint32_t tool, const Frame& frame, std::uint32_t node, ContactState state,
+            const Place& place) noexcept;
+  void hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept;
+  void add(NodeConstraint& constraint, std::uint32_t node, ContactState state, const Place& place,
+           const Friction& friction) noexcept;
 
   std::vector<Tool> tools_;
+  std::vector<VecArray> corners_;  // of each tool, see tool_bounds.hpp
   std::vector<Wall> walls_;
   std::vector<Motion> motions_;
-  std::vector<std::uint8_t> fixed_;
   ContactRule rule_;
   ReservedVector<NodeConstraint> constraints_, previous_;
   ReservedVector<Place> places_, previous_places_;
-  std::vector<std::uint8_t> taken_;  // nodes that have a holder in this find
+  std::vector<Use> uses_;                  // of each node
+  std::vector<std::uint32_t> last_faces_;  // that each node was found outside of; a guess, changes no result
 };
 
 }  // namespace crumble

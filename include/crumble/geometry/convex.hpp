@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "crumble/base/vec.hpp"
@@ -15,12 +16,22 @@ struct Plane {
   double offset;
 };
 
-/// A closed convex polyhedron in its own frame, metres.
+/// The faces of a polyhedron as the searches below read them: the planes with one array per component, padded to whole
+/// kLanes by planes that nothing is above, and the triangles of each plane.
+struct FaceTable {
+  static constexpr std::size_t kLanes = 4;
+  std::vector<double> x, y, z, offset;
+  std::vector<Triangle> triangles;            // in the order of their planes
+  std::vector<std::uint32_t> first_triangle;  // of each plane, and the end
+};
+
+/// A closed convex polyhedron in its own frame, metres. The functions below make it.
 struct ConvexPolyhedron {
   std::vector<Plane> planes;
   std::vector<Vec3> vertices;
   TriangleMesh surface;       // for drawing and for other libraries; same vertices
   double half_thickness = 0;  // radius of the largest sphere about the vertex mean that fits inside
+  FaceTable faces;
 };
 
 /// Greatest n . x - offset over the planes: negative inside, where its magnitude is the depth under the nearest
@@ -28,13 +39,15 @@ struct ConvexPolyhedron {
 double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std::uint32_t& nearest);
 
 /// Where the surface is nearest to p, and how far: negative inside (under the nearest face), the Euclidean distance
-/// outside.
+/// outside. A point farther out than `far` is answered with a lower bound that is greater than `far`, and with a point
+/// that means nothing.
 struct SurfaceQuery {
   Vec3 point;
   double signed_distance;
   std::uint32_t plane;  // the face met; at an edge or corner the one that p is farthest above
 };
-SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p);
+SurfaceQuery nearest_surface(const ConvexPolyhedron& body, const Vec3& p,
+                             double far = std::numeric_limits<double>::infinity());
 
 /// Round stick: a right prism on a regular polygon with `sides` corners on the circle of `radius`, axis +Z through the
 /// origin, one face looking down (-Y) when `sides` is even.

@@ -19,8 +19,14 @@ Quat axis_angle(const Vec3& axis, double angle);
 Quat multiply(const Quat& a, const Quat& b);
 
 /// R v and R^T v, sums in written order.
-Vec3 rotate(const Mat3& r, const Vec3& v);
-Vec3 rotate_back(const Mat3& r, const Vec3& v);
+inline Vec3 rotate(const Mat3& r, const Vec3& v) {
+  return {(r(0, 0) * v.x() + r(0, 1) * v.y()) + r(0, 2) * v.z(), (r(1, 0) * v.x() + r(1, 1) * v.y()) + r(1, 2) * v.z(),
+          (r(2, 0) * v.x() + r(2, 1) * v.y()) + r(2, 2) * v.z()};
+}
+inline Vec3 rotate_back(const Mat3& r, const Vec3& v) {
+  return {(r(0, 0) * v.x() + r(1, 0) * v.y()) + r(2, 0) * v.z(), (r(0, 1) * v.x() + r(1, 1) * v.y()) + r(2, 1) * v.z(),
+          (r(0, 2) * v.x() + r(1, 2) * v.y()) + r(2, 2) * v.z()};
+}
 
 /// A pose with its rotation matrix worked out once.
 struct Frame {

@@ -1,14 +1,17 @@
 // Where the energy is, and where it went.
 #pragma once
 
+#include <span>
+
+#include "crumble/base/vec_array.hpp"
 #include "crumble/network/spring_network.hpp"
 
 namespace crumble {
 
-/// Sum of k/2 (length - rest length)^2 over the springs, with the stiffness in force now, J.
-double spring_energy(const SpringNetwork& network, const NetworkState& state) noexcept;
+/// Sum of k/2 (length - rest length)^2 over the springs, with `stiffnesses` in force (spring_count, N/m), J.
+double spring_energy(const SpringNetwork& network, VecView positions, std::span<const double> stiffnesses) noexcept;
 /// Sum of m/2 v^2 over the nodes that may move, J.
-double kinetic_energy(const SpringNetwork& network, const NetworkState& state) noexcept;
+double kinetic_energy(const SpringNetwork& network, VecView velocities) noexcept;
 /// Sum of k/2 l0^2 over all springs, J: the scale against which rounding is judged.
 double reference_energy(const SpringNetwork& network) noexcept;
 

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "crumble/base/vec_array.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
@@ -37,19 +36,8 @@ struct SpringNetwork {
   std::size_t spring_count() const { return springs.size(); }
 };
 
-/// What changes from step to step.
-struct NetworkState {
-  VecArray positions;               // metres
-  VecArray velocities;              // m/s
-  VecArray forces;                  // springs + external, at the last solve, before contact, N
-  VecArray external;                // force on each node from outside (gravity), N
-  std::vector<double> stiffnesses;  // in force now, N/m: fading to 0 once a spring is cut (spring_count)
-};
-
 /// Throws Error naming the field: invalid_value, out_of_range.
 SpringNetwork make_network(const TetMesh& mesh, const Material& material, MassRule rule,
                            std::span<const std::uint32_t> fixed_nodes);
-/// At rest, unbroken, without external force.
-NetworkState make_rest_state(const TetMesh& mesh, const SpringNetwork& network);
 
 }  // namespace crumble

@@ -10,6 +10,6 @@ namespace crumble {
 double stability_limit(double gamma);
 
 /// Greatest eigenvalue of the network's stiffness matrix at rest, N/m, by power iteration to 1e-6.
-double largest_eigenvalue(const SpringNetwork& network, const NetworkState& rest);
+double largest_eigenvalue(const SpringNetwork& network, std::span<const Vec3> rest_positions);
 
 }  // namespace crumble

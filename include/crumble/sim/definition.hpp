@@ -2,15 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "crumble/base/bytes.hpp"
 #include "crumble/contact/tool.hpp"
 #include "crumble/network/coefficients.hpp"
+#include "crumble/network/solver.hpp"
 #include "crumble/network/spring_network.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
+
+/// Where a spring is found to be too long (Eq 8).
+enum class CutTest : std::uint8_t {
+  with_forces = 0,  // where the next step's forces are worked out, after the tool has pressed: costs nothing
+  after_move =
+      1,  // on the new positions, as in the paper: costs another pass over the springs, without SIMD or threads
+};
 
 /// How one step is done.
 struct StepSettings {
@@ -18,9 +27,15 @@ struct StepSettings {
   TimeStepPolicy policy = TimeStepPolicy::guard;
   std::uint32_t iterations = 1;  // of Eqs (3) and (4) per step, each advancing tau; above 1 only unchecked
   ContactRule contact_rule = ContactRule::nearest_surface;
-  double cut_fade = 4e-3;     // seconds in which a cut spring's force goes to 0, in equal steps; [0, 1]
-  bool mean_force = false;    // Eq (7): report the mean of the last five forces
+  CutTest cut_test = CutTest::with_forces;
+  double cut_fade = 4e-3;   // seconds in which a cut spring's force goes to 0, in equal steps; [0, 1]
+  bool mean_force = false;  // Eq (7): report the mean of the last five forces
+  Precision precision = Precision::float64;
+  // These change no bit of the result:
   bool energy_audit = false;  // keep the ledger; costs four passes over the springs
+  std::string kernel;         // one of kernel_names(); empty: $CRUMBLE_KERNEL, else the fastest here
+  std::uint32_t threads = 1;  // that share a step, when the body is large enough; [1, 64]
+  ParallelFor host_threads;   // to share it instead, when set
 };
 
 /// Metres, kilograms, seconds, newtons; right-handed, +Y up.
@@ -36,8 +51,8 @@ struct SimulationDef {
 };
 
 /// The paper's choices where it makes one: along-motion contact, equal masses, tau = 2.9 ms unchecked, one iteration,
-/// cuts without fading, Eq (7)'s mean, friction 3.0 / 1.5 on every tool and wall, no gravity. Body, fixed nodes and
-/// material stay.
+/// cuts after the move and without fading, Eq (7)'s mean, friction 3.0 / 1.5 on every tool and wall, no gravity. Body,
+/// fixed nodes and material stay.
 void apply_paper_preset(SimulationDef& def);
 
 /// Nodes whose rest position has y <= height, metres: what stands on the table.

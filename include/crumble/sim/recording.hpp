@@ -22,8 +22,8 @@ class Recording {
   std::size_t tool_count() const { return tool_count_; }
   std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
   std::uint64_t state_hash(std::size_t step) const { return hashes_[step]; }
-  /// A simulation at the recording's start.
-  Simulation start(bool energy_audit = false) const;
+  /// A simulation at the recording's start. Of `how` only what changes no bit counts: audit, kernel, threads.
+  Simulation start(const StepSettings& how = {}) const;
 
   /// The file is replaced only when all is written. Loading throws Error: io, corrupt, version.
   void save(const std::filesystem::path& path) const;

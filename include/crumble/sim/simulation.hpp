@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "crumble/base/cloned.hpp"
 #include "crumble/base/error.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/contact/contacts.hpp"
@@ -82,9 +83,14 @@ class Simulation {
   const TetMesh& mesh() const noexcept { return def_.mesh; }
   const SpringNetwork& network() const noexcept { return network_; }
   const StepCoefficients& coefficients() const noexcept { return coefficients_; }
-  VecView positions() const noexcept { return state_.positions; }
-  VecView velocities() const noexcept { return state_.velocities; }
-  VecView forces() const noexcept { return state_.forces; }
+  /// How the network was laid out for the solver, and the kernel in use.
+  LayoutReport layout() const noexcept { return solver_->layout(); }
+  const char* kernel() const noexcept { return solver_->kernel(); }
+  /// By node, metres and m/s. The first call after a step fetches them all from the solver; valid until the next step.
+  VecView positions() const noexcept;
+  VecView velocities() const noexcept;
+  /// Springs + gravity at the present positions, N. Works them out: not for the servo loop; allocates.
+  VecArray forces() const;
   std::span<const std::uint8_t> intact() const noexcept { return intact_; }
   /// Springs cut by the last step, ascending.
   std::span<const std::uint32_t> new_cuts() const noexcept { return {new_cuts_.data(), info_.new_cuts}; }
@@ -110,32 +116,40 @@ class Simulation {
   void solve_network() noexcept;
   void cut_springs() noexcept;
   void fade_cut_springs() noexcept;
+  void fade(Fading& fading) noexcept;
+  void drop_faded() noexcept;
   void sum_reaction() noexcept;
   void finish_step() noexcept;
   void audit_projection() noexcept;
+  void audit_before_solve() noexcept;
+  void audit_overlong() noexcept;
   void audit_solve() noexcept;
   void audit_cut() noexcept;
   double stored_energy() const noexcept;
   void load_fading(ByteReader& in);
   bool find_divergence() noexcept;
+  void set_share(std::uint32_t spring, double share) noexcept;
+  void forget_copies() noexcept { positions_known_ = velocities_known_ = false; }
 
   SimulationDef def_;
   SpringNetwork network_;
   StepCoefficients coefficients_;
-  std::vector<double> squared_limits_;
   std::uint64_t layout_hash_;
   double reference_energy_;
 
-  NetworkState state_;
+  std::uint32_t fade_substeps_;   // in which a cut spring still pulls, after the one that cut it
+  Cloned<NetworkSolver> solver_;  // holds the state of nodes and springs
   Contacts contacts_;
-  ExponentialSolver solver_;
+  std::vector<double> stiffnesses_;   // in force now, N/m: fading to 0 once a spring is cut (spring_count)
+  VecArray external_;                 // weight of each node, N
   std::vector<std::uint8_t> intact_;  // 1 intact, 0 cut (spring_count)
   std::vector<std::uint32_t> new_cuts_;
-  ReservedVector<Fading> fading_;              // cut springs that still pull, oldest first
-  std::uint32_t fade_substeps_;                // how long each of them does
-  std::vector<Pose> start_poses_;              // of the tools, at the start of the step
-  VecArray good_positions_, good_velocities_;  // of the step before: where a diverged body freezes
-  VecArray before_solve_;                      // positions
+  ReservedVector<Fading> fading_;            // cut springs that still pull, oldest first
+  std::vector<Pose> start_poses_;            // of the tools, at the start of the step
+  mutable VecArray positions_, velocities_;  // copies by node
+  mutable bool positions_known_ = false, velocities_known_ = false;
+  VecArray before_solve_;  // positions, for the audit
+  double kinetic_before_solve_ = 0;
 
   std::vector<Wrench> wrenches_;
   std::vector<std::array<Wrench, 5>> history_;  // of Eq (7), newest at step % 5

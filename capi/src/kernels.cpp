@@ -1,0 +1,31 @@
+#include "kernels.hpp"
+
+#include <algorithm>
+
+#include "call.hpp"
+#include "crumble/network/solver.hpp"
+
+namespace crumble::capi {
+
+// Never destroyed: a program may still print a name while it ends.
+const std::vector<std::string>& kernel_texts() {
+  static const auto* const texts = new std::vector<std::string>(kernel_names());
+  return *texts;
+}
+
+std::uint32_t kernel_number(std::string_view name) {
+  const auto& texts = kernel_texts();
+  return static_cast<std::uint32_t>(std::find(texts.begin(), texts.end(), name) - texts.begin());
+}
+
+}  // namespace crumble::capi
+
+const char* crumble_kernel_name(uint32_t index) {
+  const char* name = nullptr;
+  crumble::capi::guard(__func__, [&](const crumble::capi::Call&) {
+    const auto& texts = crumble::capi::kernel_texts();
+    if (index < texts.size()) name = texts[index].c_str();
+    return CRUMBLE_OK;
+  });
+  return name;
+}

@@ -1,0 +1,128 @@
+// The solver in one precision.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "crumble/network/solver.hpp"
+#include "network/aligned_vector.hpp"
+#include "network/kernels.hpp"
+#include "network/layout.hpp"
+
+namespace crumble {
+
+/// x, y and z by slot, with room behind for whole vectors.
+template <class Real>
+class SlotArray {
+ public:
+  SlotArray() = default;
+  explicit SlotArray(std::size_t size) : stride_((size + 15) / 16 * 16), data_(3 * stride_) {}
+  bool empty() const { return data_.empty(); }
+  std::size_t size() const { return stride_; }
+  Triple<Real> from(std::size_t i = 0) { return {data_.data() + i, stride_}; }
+  Triple<const Real> from(std::size_t i = 0) const { return {data_.data() + i, stride_}; }
+  std::span<Real> axis(std::size_t a) { return {data_.data() + a * stride_, stride_}; }
+  std::span<const Real> axis(std::size_t a) const { return {data_.data() + a * stride_, stride_}; }
+  Vec3 get(std::size_t i) const { return {double{axis(0)[i]}, double{axis(1)[i]}, double{axis(2)[i]}}; }
+  void set(std::size_t i, const Vec3& v) {
+    for (std::size_t a = 0; a < 3; ++a) axis(a)[i] = static_cast<Real>(v[static_cast<int>(a)]);
+  }
+
+ private:
+  std::size_t stride_ = 0;
+  AlignedVector<Real> data_;
+};
+
+template <class Real>
+class Engine final : public NetworkSolver {
+ public:
+  Engine(const SpringNetwork& network, const StepCoefficients& coefficients, std::span<const Vec3> rest_positions,
+         const SolverSettings& settings);
+  std::unique_ptr<NetworkSolver> clone() const override { return std::make_unique<Engine>(*this); }
+  void reset() noexcept override;
+
+  std::size_t node_count() const noexcept override { return layout_->node_of.size(); }
+  Vec3 position(std::uint32_t node) const noexcept override;
+  Vec3 velocity(std::uint32_t node) const noexcept override;
+  void place(std::uint32_t node, const Vec3& position, const Vec3& velocity) noexcept override;
+  std::span<const std::uint32_t> inside(const Vec3& low, const Vec3& high) noexcept override;
+  std::span<const std::uint32_t> behind(const Plane& plane) noexcept override;
+
+  void set_external(VecView forces) noexcept override;
+  void set_share(std::uint32_t spring, double share) noexcept override;
+  void solve(std::span<NodeConstraint> constraints) noexcept override;
+  std::span<const std::uint32_t> overlong() const noexcept override { return {overlong_.data(), overlong_count_}; }
+  void find_overlong(double length_limit) noexcept override;
+  std::optional<std::uint32_t> lost_node() const noexcept override;
+
+  void read_forces(VecSpan forces) const override;
+  void read_positions(VecSpan positions) const noexcept override;
+  void read_velocities(VecSpan velocities) const noexcept override;
+  void add_to(Hash& hash) const noexcept override;
+  void save(ByteWriter& out) const override;
+  void load(ByteReader& in) override;
+  LayoutReport layout() const noexcept override;
+  const char* kernel() const noexcept override { return kernels_->name; }
+
+ private:
+  struct Held {
+    Vec3 position, velocity;
+  };
+  static constexpr bool kHasRest = sizeof(Real) == 4;
+
+  // what never changes, shared by copies
+  struct Fixed {
+    std::vector<Edge> springs;                                    // node numbers
+    std::vector<double> stiffnesses, rest_lengths;                // by spring
+    std::vector<Vec3> rest_positions;                             // by slot
+    StepCoefficients coefficients;                                // by node
+    AlignedVector<Real> drift, force_gain, decay, velocity_gain;  // by slot
+    std::vector<Way<Real>> ways;
+    std::vector<std::uint8_t> present;  // by block of lanes
+    std::vector<std::uint8_t> plain;    // by way, of the unbroken body
+    std::vector<std::uint32_t> way_of_block;
+    Real cut_share = 0;
+    Real give = 0;  // 1 - 1 / l_p
+  };
+  static std::shared_ptr<const Fixed> make_fixed(const SpringNetwork& network, const StepCoefficients& coefficients,
+                                                 std::span<const Vec3> rest_positions, const SolverSettings& settings,
+                                                 const Layout& layout);
+  static void set_ways(const SpringNetwork& network, const Layout& layout, Fixed& fixed);
+
+  Vec3 load(std::size_t slot) const noexcept;
+  void store(std::size_t slot, const Vec3& position, const Vec3& velocity) noexcept;
+  void mend() noexcept;
+  void start_forces() noexcept;
+  void refresh() noexcept;
+  void widen(std::size_t slot) noexcept;
+  std::span<const std::uint32_t> nodes_of_found(std::size_t count) noexcept;
+
+  void in_partitions(void (Engine::*task)(std::uint32_t) noexcept) noexcept;
+  void sum_forces(std::uint32_t partition) noexcept;
+  void join_forces(std::uint32_t partition) noexcept;
+  void move(std::uint32_t partition) noexcept;
+  Vec3 force_at(std::uint32_t slot) const noexcept;
+  std::size_t first_overlong(std::uint32_t partition) const noexcept;
+  void collect_overlong() noexcept;
+
+  std::shared_ptr<const Layout> layout_;
+  std::shared_ptr<const Fixed> fixed_;
+  const KernelSet* kernels_;
+  std::shared_ptr<Team> team_;
+
+  SlotArray<Real> at_, rest_of_at_, velocity_, external_;
+  SlotArray<Real> force_;                       // partitions shifted apart by their halos
+  AlignedVector<Real> packed_, packed_force_;   // x y z 0 by slot; forces shifted as above
+  AlignedVector<Real> stiffness_, rest_force_;  // by lane
+  std::vector<std::uint8_t> whole_;             // by lane, see ForcePass
+  std::vector<std::uint8_t> plain_;             // by way, see ForcePass
+  std::vector<Bounds<Real>> bounds_;            // by block
+  std::vector<std::uint32_t> found_;            // of the last search: slots, then nodes
+  std::vector<std::uint32_t> overlong_;         // lanes by partition, then springs
+  std::vector<std::size_t> overlong_of_;        // count by partition
+  std::size_t overlong_count_ = 0;
+  std::vector<std::uint32_t> lost_of_;  // by partition
+  std::vector<Held> held_;
+};
+
+}  // namespace crumble
