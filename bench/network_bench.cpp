@@ -12,6 +12,7 @@ namespace {
 struct Case {
   const BenchBody* body;
   std::string precision, kernel;
+  bool torn = false;  // all springs cut
 };
 
 void solve(benchmark::State& state, const Case& c) {
@@ -23,6 +24,9 @@ void solve(benchmark::State& state, const Case& c) {
   settings.length_limit = def.material.length_limit;
   const auto solver = NetworkSolver::make(network, make_coefficients(network, def.step.tau, def.step.policy),
                                           def.mesh.positions, settings);
+  if (c.torn) {
+    for (std::uint32_t s = 0; s < network.spring_count(); ++s) solver->set_share(s, 0);
+  }
   for (auto _ : state) solver->solve({});
   const LayoutReport layout = solver->layout();
   const auto springs = static_cast<double>(network.spring_count());
@@ -32,6 +36,7 @@ void solve(benchmark::State& state, const Case& c) {
   state.counters["lane_use"] = springs / static_cast<double>(layout.lanes);
 }
 
+// Every kernel on the unbroken body, and the fastest with every spring cut.
 void add_cases(const BenchBody& body) {
   for (const std::string& precision : precision_names()) {
     for (const std::string& kernel : kernel_names()) {
@@ -39,6 +44,8 @@ void add_cases(const BenchBody& body) {
       name.append("/").append(precision).append("/").append(kernel);
       benchmark::RegisterBenchmark(name.c_str(), solve, Case{&body, precision, kernel})->Unit(benchmark::kMicrosecond);
     }
+    const std::string name = body.structure + "/" + precision + "/all_cut";
+    benchmark::RegisterBenchmark(name.c_str(), solve, Case{&body, precision, "", true})->Unit(benchmark::kMicrosecond);
   }
 }
 
