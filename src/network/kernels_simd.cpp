@@ -166,73 +166,30 @@ struct SegmentSum {
   }
 };
 
-template <std::size_t count, bool block_more, class Real>
-HWY_INLINE void sum_segment(const ForcePass<Real>& pass, const Segment& segment, std::size_t& found) {
-  SegmentSum<Real, count, block_more>().run(pass, segment, found);
+template <std::size_t blocks, class Real>
+HWY_INLINE void sum_blocks(const ForcePass<Real>& pass, const Segment& segment, std::size_t& found) {
+  constexpr std::size_t kVector = HWY_MAX_BYTES / sizeof(Real), kSlots = blocks * kLanes;
+  SegmentSum<Real, kSlots / kVector, (kSlots % kVector > 0)>().run(pass, segment, found);
 }
 
 template <class Real>
 std::size_t sum_segments(const ForcePass<Real>& shared) {
+  static_assert(kMostBlocks == 8);
   const ForcePass<Real> pass = shared;  // in registers: stores of forces could change the shared one
-  constexpr std::size_t kVectorLanes = HWY_MAX_BYTES / sizeof(Real);
   std::size_t found = 0;
   for (const Segment& segment : pass.segments) {
-    if constexpr (kVectorLanes > kLanes) {
-      switch (segment.blocks) {
-        case 1:
-          sum_segment<0, true>(pass, segment, found);
-          break;
-        case 2:
-          sum_segment<1, false>(pass, segment, found);
-          break;
-        case 3:
-          sum_segment<1, true>(pass, segment, found);
-          break;
-        case 4:
-          sum_segment<2, false>(pass, segment, found);
-          break;
-        case 5:
-          sum_segment<2, true>(pass, segment, found);
-          break;
-        case 6:
-          sum_segment<3, false>(pass, segment, found);
-          break;
-        case 7:
-          sum_segment<3, true>(pass, segment, found);
-          break;
-        case 8:
-          sum_segment<4, false>(pass, segment, found);
-          break;
-      }
-    } else {
-      constexpr std::size_t k = kLanes / kVectorLanes;
-      switch (segment.blocks) {
-        case 1:
-          sum_segment<k, false>(pass, segment, found);
-          break;
-        case 2:
-          sum_segment<2 * k, false>(pass, segment, found);
-          break;
-        case 3:
-          sum_segment<3 * k, false>(pass, segment, found);
-          break;
-        case 4:
-          sum_segment<4 * k, false>(pass, segment, found);
-          break;
-        case 5:
-          sum_segment<5 * k, false>(pass, segment, found);
-          break;
-        case 6:
-          sum_segment<6 * k, false>(pass, segment, found);
-          break;
-        case 7:
-          sum_segment<7 * k, false>(pass, segment, found);
-          break;
-        case 8:
-          sum_segment<8 * k, false>(pass, segment, found);
-          break;
-      }
+    // clang-format off
+    switch (segment.blocks) {
+      case 1: sum_blocks<1>(pass, segment, found); break;
+      case 2: sum_blocks<2>(pass, segment, found); break;
+      case 3: sum_blocks<3>(pass, segment, found); break;
+      case 4: sum_blocks<4>(pass, segment, found); break;
+      case 5: sum_blocks<5>(pass, segment, found); break;
+      case 6: sum_blocks<6>(pass, segment, found); break;
+      case 7: sum_blocks<7>(pass, segment, found); break;
+      case 8: sum_blocks<8>(pass, segment, found); break;
     }
+    // clang-format on
   }
   return found;
 }
