@@ -38,6 +38,7 @@ Contacts::Contacts(std::vector<Tool> tools, std::vector<Wall> walls, std::span<c
   // at most one contact per node: nothing grows later
   constraints_.reserve(fixed.size()), previous_.reserve(fixed.size());
   places_.reserve(fixed.size()), previous_places_.reserve(fixed.size());
+  roused_.reserve(fixed.size());
   last_faces_.assign(fixed.size(), 0);
   for (const std::uint8_t is_fixed : fixed) uses_.push_back(is_fixed ? Use::fixed : Use::free);
 }
@@ -75,6 +76,7 @@ void Contacts::find(std::uint32_t place, NodeSource& nodes) noexcept {
   std::swap(places_, previous_places_);
   constraints_.clear();
   places_.clear();
+  roused_.clear();
   for (const NodeConstraint& c : previous_) uses_[c.node] = Use::free;
   for (std::uint32_t t = 0; t < tools_.size(); ++t) find_of_tool(t, std::min(place, motions_[t].places - 1), nodes);
   find_of_walls(nodes);
@@ -98,7 +100,7 @@ void Contacts::find_of_tool(std::uint32_t t, std::uint32_t place_index, NodeSour
 bool Contacts::is_outside(const Tool& tool, const Frame& frame, std::span<const std::uint32_t> near,
                           const NodeSource& nodes) const noexcept {
   return std::none_of(near.begin(), near.end(), [&](std::uint32_t i) {
-    if (uses_[i] == Use::fixed) return false;
+    if (uses_[i] == Use::fixed || uses_[i] == Use::excluded) return false;
     std::uint32_t face = 0;
     return greatest_plane_distance(tool.shape, frame.to_local(nodes.position(i)), face) < -kTouch;
   });
@@ -116,7 +118,7 @@ void Contacts::keep_on_tool(std::uint32_t t, const Frame& frame, const NodeSourc
     Place place = previous_places_[k];
     if (before.state == ContactState::stick ||
         place_on_tool(tool, motion, frame, keep_gap, frame.to_local(nodes.position(before.node)), place)) {
-      hold(t, frame, before.node, before.state, place);
+      hold(t, frame, before.node, before.state, place).approach = before.approach;
     }
   }
 }
@@ -128,7 +130,7 @@ void Contacts::enter_tool(std::uint32_t t, const Frame& frame, std::span<const s
   const Motion& motion = motions_[t];
   const std::vector<Plane>& planes = tool.shape.planes;
   for (const std::uint32_t i : near) {
-    if (uses_[i] != Use::free) continue;
+    if (uses_[i] != Use::free && uses_[i] != Use::asleep) continue;
     const Vec3 local = frame.to_local(nodes.position(i));
     std::uint32_t& face = last_faces_[i];
     const Plane& likely = planes[face < planes.size() ? face : 0];  // it may be another tool's
@@ -137,6 +139,7 @@ void Contacts::enter_tool(std::uint32_t t, const Frame& frame, std::span<const s
     if (!(distance < 0)) continue;  // nor what is not a number
     Place place{local - distance * planes[face].normal, face};
     if (rule_ == ContactRule::along_motion) leave_along_motion(tool, motion, frame, local, place);
+    if (uses_[i] == Use::asleep) roused_.push_back(i);
     hold(t, frame, i, ContactState::fresh, place);
   }
 }
@@ -162,15 +165,15 @@ void Contacts::leave_along_motion(const Tool& tool, const Motion& motion, const 
     leave_along(tool.shape, local, rotate_back(frame.rotation, motion_here / distance), place.anchor, place.face);
 }
 
-void Contacts::hold(std::uint32_t t, const Frame& frame, std::uint32_t node, ContactState state,
-                    const Place& place) noexcept {
+NodeConstraint& Contacts::hold(std::uint32_t t, const Frame& frame, std::uint32_t node, ContactState state,
+                               const Place& place) noexcept {
   const Tool& tool = tools_[t];
   NodeConstraint c;
   c.holder = t;
   c.point = frame.to_scene(place.anchor);
   c.normal = rotate(frame.rotation, tool.shape.planes[place.face].normal);
   c.velocity = motions_[t].velocity + rotate(motions_[t].turning, place.anchor);
-  add(c, node, state, place, tool.friction);
+  return add(c, node, state, place, tool.friction);
 }
 
 void Contacts::find_of_walls(NodeSource& nodes) noexcept {
@@ -187,7 +190,8 @@ void Contacts::find_of_walls(NodeSource& nodes) noexcept {
     if (above > kKeepGap) continue;
     const bool sticks = before.state == ContactState::stick;
     hold_by_wall(before.node, before.state,
-                 {sticks ? previous_places_[k].anchor : Vec3(p - above * walls_[w].plane.normal), w});
+                 {sticks ? previous_places_[k].anchor : Vec3(p - above * walls_[w].plane.normal), w})
+        .approach = before.approach;
   }
   for (std::uint32_t w = 0; w < walls_.size(); ++w) {
     for (const std::uint32_t i : nodes.behind(walls_[w].plane)) {
@@ -199,17 +203,17 @@ void Contacts::find_of_walls(NodeSource& nodes) noexcept {
   }
 }
 
-void Contacts::hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept {
+NodeConstraint& Contacts::hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept {
   const Wall& wall = walls_[place.face];
   NodeConstraint c;
   c.holder = kWorldHolder;
   c.point = place.anchor;
   c.normal = wall.plane.normal;
-  add(c, node, state, place, wall.friction);
+  return add(c, node, state, place, wall.friction);
 }
 
-void Contacts::add(NodeConstraint& c, std::uint32_t node, ContactState state, const Place& place,
-                   const Friction& friction) noexcept {
+NodeConstraint& Contacts::add(NodeConstraint& c, std::uint32_t node, ContactState state, const Place& place,
+                              const Friction& friction) noexcept {
   c.node = node;
   c.state = state;
   c.static_friction = friction.static_coefficient;
@@ -217,15 +221,18 @@ void Contacts::add(NodeConstraint& c, std::uint32_t node, ContactState state, co
   constraints_.push_back(c);
   places_.push_back(place);
   uses_[node] = Use::held;
+  return constraints_.back();
 }
 
 void Contacts::project(NodeSource& nodes) noexcept {
-  for (const NodeConstraint& c : constraints_) {
+  for (NodeConstraint& c : constraints_) {
     if (c.state == ContactState::stick) {
       nodes.place(c.node, c.point, c.velocity);
     } else {
       const Vec3 velocity = nodes.velocity(c.node);
-      nodes.place(c.node, c.point, velocity + dot(c.velocity - velocity, c.normal) * c.normal);
+      const double approach = dot(c.velocity - velocity, c.normal);
+      if (c.state == ContactState::fresh) c.approach = std::max(c.approach, approach);
+      nodes.place(c.node, c.point, velocity + approach * c.normal);
     }
   }
 }
@@ -244,8 +251,30 @@ void Contacts::drop_released() noexcept {
   places_.resize(kept);
 }
 
+void Contacts::let_sleep(std::uint32_t node) noexcept {
+  release(node);
+  uses_[node] = Use::asleep;
+}
+
+void Contacts::wake(std::uint32_t node) noexcept {
+  if (uses_[node] == Use::asleep) uses_[node] = Use::free;
+}
+
+void Contacts::exclude(std::uint32_t node) noexcept {
+  release(node);
+  uses_[node] = Use::excluded;
+}
+
+void Contacts::release(std::uint32_t node) noexcept {
+  if (uses_[node] != Use::held) return;
+  for (NodeConstraint& c : constraints_) {
+    if (c.node == node) c.state = ContactState::released;
+  }
+  drop_released();
+}
+
 void Contacts::clear() noexcept {
-  for (const NodeConstraint& c : constraints_) uses_[c.node] = Use::free;
+  for (Use& use : uses_) use = use == Use::fixed ? Use::fixed : Use::free;
   constraints_.clear();
   places_.clear();
   motions_.assign(motions_.size(), Motion{});

@@ -68,11 +68,11 @@ std::shared_ptr<const typename Engine<Real>::Fixed> Engine<Real>::make_fixed(con
     for (std::size_t slot = 0; slot < by_node.size(); ++slot)
       out[slot] = static_cast<Real>(by_node[layout.node_of[slot]]);
   };
-  by_slot(coefficients.drift, fixed->drift);
-  by_slot(coefficients.force_gain, fixed->force_gain);
-  by_slot(coefficients.decay, fixed->decay);
-  for (Real& decay : fixed->decay) decay = decay < kLeastDecay<Real> ? 0 : decay;
-  by_slot(coefficients.velocity_gain, fixed->velocity_gain);
+  by_slot(coefficients.drift, fixed->gains.drift);
+  by_slot(coefficients.force_gain, fixed->gains.force);
+  by_slot(coefficients.decay, fixed->gains.decay);
+  for (Real& decay : fixed->gains.decay) decay = decay < kLeastDecay<Real> ? 0 : decay;
+  by_slot(coefficients.velocity_gain, fixed->gains.velocity);
   set_ways(network, layout, *fixed);
   return fixed;
 }
@@ -114,9 +114,10 @@ void Engine<Real>::reset() noexcept {
   refresh();
 }
 
-// All springs unbroken.
+// All springs unbroken, no node frozen.
 template <class Real>
 void Engine<Real>::mend() noexcept {
+  gains_ = fixed_->gains;
   for (std::uint32_t s = 0; s < fixed_->stiffnesses.size(); ++s) set_share(s, 1);
   plain_ = fixed_->plain;
 }
@@ -216,6 +217,14 @@ void Engine<Real>::set_share(std::uint32_t spring, double share) noexcept {
 }
 
 template <class Real>
+void Engine<Real>::set_frozen(std::uint32_t node, bool frozen) noexcept {
+  const std::uint32_t slot = layout_->slot_of[node];
+  for (const auto part : {&Gains::drift, &Gains::force, &Gains::decay, &Gains::velocity}) {
+    (gains_.*part)[slot] = frozen ? Real(0) : (fixed_->gains.*part)[slot];
+  }
+}
+
+template <class Real>
 std::optional<std::uint32_t> Engine<Real>::lost_node() const noexcept {
   for (const std::uint32_t slot : lost_of_) {
     if (slot != kNone) return layout_->node_of[slot];
@@ -224,8 +233,8 @@ std::optional<std::uint32_t> Engine<Real>::lost_node() const noexcept {
 }
 
 template <class Real>
-void Engine<Real>::read_positions(VecSpan positions) const noexcept {
-  for (std::size_t slot = 0; slot < node_count(); ++slot) positions.set(layout_->node_of[slot], load(slot));
+void Engine<Real>::read_positions(std::uint32_t first, VecSpan positions) const noexcept {
+  for (std::size_t i = 0; i < positions.size(); ++i) positions.set(i, load(layout_->slot_of[first + i]));
 }
 
 template <class Real>

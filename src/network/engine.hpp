@@ -50,13 +50,14 @@ class Engine final : public NetworkSolver {
 
   void set_external(VecView forces) noexcept override;
   void set_share(std::uint32_t spring, double share) noexcept override;
+  void set_frozen(std::uint32_t node, bool frozen) noexcept override;
   void solve(std::span<NodeConstraint> constraints) noexcept override;
   std::span<const std::uint32_t> overlong() const noexcept override { return {overlong_.data(), overlong_count_}; }
   void find_overlong(double length_limit) noexcept override;
   std::optional<std::uint32_t> lost_node() const noexcept override;
 
   void read_forces(VecSpan forces) const override;
-  void read_positions(VecSpan positions) const noexcept override;
+  void read_positions(std::uint32_t first, VecSpan positions) const noexcept override;
   void read_velocities(VecSpan velocities) const noexcept override;
   void add_to(Hash& hash) const noexcept override;
   void save(ByteWriter& out) const override;
@@ -70,13 +71,18 @@ class Engine final : public NetworkSolver {
   };
   static constexpr bool kHasRest = sizeof(Real) == 4;
 
+  /// Eqs (3) and (4), by slot; all 0 for a node that does not move.
+  struct Gains {
+    AlignedVector<Real> drift, force, decay, velocity;
+  };
+
   // what never changes, shared by copies
   struct Fixed {
-    std::vector<Edge> springs;                                    // node numbers
-    std::vector<double> stiffnesses, rest_lengths;                // by spring
-    std::vector<Vec3> rest_positions;                             // by slot
-    StepCoefficients coefficients;                                // by node
-    AlignedVector<Real> drift, force_gain, decay, velocity_gain;  // by slot
+    std::vector<Edge> springs;                      // node numbers
+    std::vector<double> stiffnesses, rest_lengths;  // by spring
+    std::vector<Vec3> rest_positions;               // by slot
+    StepCoefficients coefficients;                  // by node
+    Gains gains;
     std::vector<Way<Real>> ways;
     std::vector<std::uint8_t> present;  // by block of lanes
     std::vector<std::uint8_t> plain;    // by way, of the unbroken body
@@ -112,6 +118,7 @@ class Engine final : public NetworkSolver {
 
   SlotArray<Real> at_, rest_of_at_, velocity_, external_;
   SlotArray<Real> force_;                       // partitions shifted apart by their halos
+  Gains gains_;                                 // now: frozen nodes have none
   AlignedVector<Real> packed_, packed_force_;   // x y z 0 by slot; forces shifted as above
   AlignedVector<Real> stiffness_, rest_force_;  // by lane
   std::vector<std::uint8_t> whole_;             // by lane, see ForcePass

@@ -204,10 +204,9 @@ void Engine<Real>::move(std::uint32_t p) noexcept {
   join_forces(p);
   const Partition& part = layout_->partitions[p];
   const auto& kernel = kernel_of<Real>(*kernels_);
-  lost_of_[p] =
-      kernel.move({part.first, part.end, at_.from(), rest_of_at_.from(), velocity_.from(),
-                   force_.from(layout_->shift(p)), std::as_const(external_).from(), fixed_->drift.data(),
-                   fixed_->force_gain.data(), fixed_->decay.data(), fixed_->velocity_gain.data(), bounds_.data()});
+  lost_of_[p] = kernel.move({part.first, part.end, at_.from(), rest_of_at_.from(), velocity_.from(),
+                             force_.from(layout_->shift(p)), std::as_const(external_).from(), gains_.drift.data(),
+                             gains_.force.data(), gains_.decay.data(), gains_.velocity.data(), bounds_.data()});
   kernel.pack(part.own_groups, std::as_const(at_).from(), packed_.data());
 }
 

@@ -18,7 +18,7 @@ void Simulation::audit_projection() noexcept {
 }
 
 void Simulation::audit_before_solve() noexcept {
-  solver_->read_positions(before_solve_);
+  solver_->read_positions(0, before_solve_);
   solver_->read_velocities(velocities_);
   kinetic_before_solve_ = kinetic_energy(network_, velocities_);
 }

@@ -149,7 +149,7 @@ bool Simulation::find_divergence() noexcept {
 }
 
 VecView Simulation::positions() const noexcept {
-  if (!positions_known_) solver_->read_positions(positions_);
+  if (!positions_known_) solver_->read_positions(0, positions_);
   positions_known_ = true;
   return positions_;
 }

@@ -280,5 +280,60 @@ TEST(Contacts, ClearGoesBackToBeforeTheFirstMove) {
   EXPECT_TRUE(rig.contacts.constraints().empty()) << "a tool without a place holds nothing";
 }
 
+TEST(Contacts, ASleepingNodeIsHeldByToolsOnlyAndRousedByThem) {
+  // node 0 under the floor, node 1 where the bar will come down
+  ContactRig rig({bar(0.01, 0.006, 0.05)}, {{0.1, -0.001, 0}, {0, 0.01, 0}}, ContactRule::nearest_surface,
+                 {{{Vec3::UnitY(), 0}, {}}});
+  rig.engage({at(0, 0.1, 0)});
+  rig.contacts.let_sleep(0);
+  rig.contacts.let_sleep(1);
+  rig.touch({at(0, 0.1, 0)});
+  EXPECT_TRUE(rig.contacts.constraints().empty()) << "the floor lets it sleep";
+  EXPECT_TRUE(rig.contacts.roused().empty());
+  ContactRig low = rig;
+  low.contacts.move_tool(0, at(0, 0.0121, 0), kTau);  // a jump
+  low.contacts.find(0, low.nodes);
+  EXPECT_TRUE(low.contacts.roused().empty()) << "a suspended tool touches nothing";
+  for (double y = 0.1; y > 0.012; y -= 0.001) rig.touch({at(0, y, 0)});
+  ASSERT_EQ(rig.contacts.constraints().size(), 1u);
+  EXPECT_EQ(rig.contacts.constraints()[0].node, 1u);
+  ASSERT_EQ(rig.contacts.roused().size(), 1u);
+  EXPECT_EQ(rig.contacts.roused()[0], 1u);
+  rig.contacts.wake(0);
+  rig.touch({at(0, 0.0121, 0)});
+  EXPECT_NE(rig.contact_of(0), nullptr) << "awake, the floor pushes it";
+  EXPECT_TRUE(rig.contacts.roused().empty()) << "told once";
+}
+
+TEST(Contacts, AnExcludedNodeTouchesNothing) {
+  ContactRig rig({bar(0.01, 0.006, 0.05)}, {{0, -0.0029, 0}, {0.001, -0.0029, 0}});
+  rig.engage({at(0, 0, 0)});
+  rig.touch({at(0, 0, 0)});
+  ASSERT_EQ(rig.contacts.constraints().size(), 2u);
+  rig.contacts.exclude(0);
+  EXPECT_EQ(rig.contact_of(0), nullptr) << "let go at once";
+  EXPECT_NE(rig.contact_of(1), nullptr);
+  rig.touch({at(0, 0, 0)});
+  EXPECT_EQ(rig.contact_of(0), nullptr);
+  rig.contacts.clear();
+  rig.engage({at(0, 0, 0)});
+  rig.nodes.positions.set(0, {0, -0.0029, 0});
+  rig.touch({at(0, 0, 0)});
+  EXPECT_NE(rig.contact_of(0), nullptr) << "clear() brings it back";
+}
+
+TEST(Contacts, AFreshContactTellsHowFastTheyMet) {
+  ContactRig rig({bar(0.01, 0.006, 0.05)}, {{0, -0.0035, 0}});
+  rig.nodes.velocities.set(0, {0.3, 0.2, 0});  // up towards the bar's lower face
+  rig.engage({at(0, 0, 0)});
+  rig.touch({at(0, -0.001, 0)});  // which comes down at 1 m/s
+  ASSERT_NE(rig.contact_of(0), nullptr);
+  const double approach = rig.contact_of(0)->approach;
+  EXPECT_NEAR(approach, 1.2, 1e-12);
+  rig.decide(ContactState::slip);
+  rig.touch({at(0, -0.002, 0)});
+  EXPECT_EQ(rig.contact_of(0)->approach, approach) << "of the first moment";
+}
+
 }  // namespace
 }  // namespace crumble

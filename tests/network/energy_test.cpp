@@ -22,11 +22,11 @@ Energy measure(const Violence& v, const SolverSettings& settings, NetworkSolver&
   v.put(solver);
   const std::size_t nodes = v.rest.size();
   VecArray from(nodes), velocities(nodes), to(nodes);
-  solver.read_positions(from), solver.read_velocities(velocities);
+  solver.read_positions(0, from), solver.read_velocities(velocities);
   const double kinetic = kinetic_energy(v.network, velocities);
   std::vector<NodeConstraint> constraints = v.constraints;
   solver.solve(constraints);
-  solver.read_positions(to), solver.read_velocities(velocities);
+  solver.read_positions(0, to), solver.read_velocities(velocities);
 
   std::vector<double> stiffnesses = v.network.stiffnesses;
   for (std::size_t s = 0; s < stiffnesses.size(); ++s) stiffnesses[s] *= v.shares[s];

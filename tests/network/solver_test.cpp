@@ -144,6 +144,26 @@ TEST(Contacts, FrictionOpposesSlidingPastTheSurface) {
   EXPECT_GT(dragged, 100);
 }
 
+TEST(Solver, ReadsAnyRangeOfPositionsByNode) {
+  Random random(3);
+  const TetMesh mesh = shuffled(make_lattice_box({0.02, 0.02, 0.02}, 0.002), random);
+  const SpringNetwork network = make_network(mesh, {}, MassRule::lumped, {});
+  const auto n = static_cast<std::uint32_t>(mesh.node_count());
+  for (const Precision precision : {Precision::float64, Precision::float32}) {
+    const auto solver = NetworkSolver::make(network, make_coefficients(network, 1e-3, TimeStepPolicy::guard),
+                                            mesh.positions, settings_of(precision));
+    ASSERT_TRUE(solver->layout().sorted);  // has numbered the nodes anew
+    for (std::uint32_t i = 0; i < n; ++i) {
+      solver->place(i, mesh.positions[i] + random_vector(random, 0.001), Vec3::Zero());
+    }
+    for (const auto& [first, count] : {std::pair{0u, n}, {0u, 1u}, {17u, 90u}, {n - 1, 1u}, {n, 0u}}) {
+      VecArray read(count);
+      solver->read_positions(first, read);
+      for (std::uint32_t i = 0; i < count; ++i) EXPECT_EQ(read[i], solver->position(first + i)) << first + i;
+    }
+  }
+}
+
 // Powers of two: lengths and limits are exact, so "exactly at the limit" means that.
 TEST(Overlong, LongerThanTheLimitOnlyAndIntactOnly) {
   for (const Precision precision : {Precision::float64, Precision::float32}) {
@@ -237,6 +257,39 @@ TEST(Solver, RefusesBadSettingsByName) {
   SolverSettings settings;
   settings.threads = 0;
   EXPECT_NE(message(settings).find("threads"), std::string::npos);
+}
+
+TEST(Solver, AFrozenNodeStaysAtRestAndIsFreeAgain) {
+  for (const Precision precision : {Precision::float64, Precision::float32}) {
+    const TetMesh mesh = make_lattice_box({0.02, 0.02, 0.02}, 0.01);
+    const SpringNetwork network = make_network(mesh, {}, MassRule::lumped, {});
+    const StepCoefficients coefficients = make_coefficients(network, 1e-3, TimeStepPolicy::guard);
+    const auto solver = NetworkSolver::make(network, coefficients, mesh.positions, settings_of(precision));
+    // the same as fixing it from the start
+    const std::uint32_t node = 13;
+    const SpringNetwork with_fixed = make_network(mesh, {}, MassRule::lumped, std::span(&node, 1));
+    const auto fixed = NetworkSolver::make(with_fixed, make_coefficients(with_fixed, 1e-3, TimeStepPolicy::guard),
+                                           mesh.positions, settings_of(precision));
+    solver->set_frozen(node, true);
+    for (const auto& each : {solver.get(), fixed.get()}) {
+      for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
+        each->place(i, mesh.positions[i] * 1.05, i == node ? Vec3::Zero() : Vec3(0.01, 0.02, -0.01));
+      }
+      for (int step = 0; step < 100; ++step) each->solve({});
+    }
+    for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
+      EXPECT_EQ(solver->position(i), fixed->position(i));
+      EXPECT_EQ(solver->velocity(i), fixed->velocity(i));
+    }
+    EXPECT_EQ(solver->velocity(node), Vec3::Zero());
+    const auto copy = solver->clone();
+    const Vec3 before = copy->position(node);
+    copy->solve({});
+    EXPECT_EQ(copy->position(node), before) << "a copy knows";
+    solver->set_frozen(node, false);
+    for (int step = 0; step < 10; ++step) solver->solve({});
+    EXPECT_NE(solver->position(node), before);
+  }
 }
 
 }  // namespace

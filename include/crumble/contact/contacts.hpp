@@ -37,6 +37,14 @@ class Contacts {
   /// its velocity.
   void project(NodeSource& nodes) noexcept;
 
+  /// A sleeping node is held by nothing; a tool that comes to it rouses it and holds it. Not for fixed nodes.
+  void let_sleep(std::uint32_t node) noexcept;
+  void wake(std::uint32_t node) noexcept;
+  /// The node touches nothing from here on, as if it were not there.
+  void exclude(std::uint32_t node) noexcept;
+  /// Nodes that tools have roused in the last find(): awake from here on.
+  std::span<const std::uint32_t> roused() const noexcept { return roused_; }
+
   /// For stage 3; in order of holder, then of entry: those that it held before stay in their order, and what comes in
   /// follows in the order of the search.
   std::span<NodeConstraint> constraints() noexcept { return constraints_; }
@@ -50,7 +58,7 @@ class Contacts {
   bool engaged(std::size_t tool) const noexcept { return motions_[tool].engaged; }
   bool jumped(std::size_t tool) const noexcept { return motions_[tool].jumped; }
 
-  /// Back to before the first move.
+  /// Back to before the first move, all nodes awake and none excluded.
   void clear() noexcept;
   void save(ByteWriter& out) const;
   void load(ByteReader& in);
@@ -76,7 +84,7 @@ class Contacts {
     Vec3 anchor;  // in the holder's frame
     std::uint32_t face = 0;
   };
-  enum class Use : std::uint8_t { free, held, fixed };  // held: named by constraints_
+  enum class Use : std::uint8_t { free, held, fixed, asleep, excluded };  // held: named by constraints_
 
   void find_of_tool(std::uint32_t tool, std::uint32_t place, NodeSource& nodes) noexcept;
   void keep_on_tool(std::uint32_t tool, const Frame& frame, const NodeSource& nodes) noexcept;
@@ -89,11 +97,12 @@ class Contacts {
                      Place& place) const noexcept;
   void leave_along_motion(const Tool& tool, const Motion& motion, const Frame& frame, const Vec3& local,
                           Place& place) const noexcept;
-  void hold(std::uint32_t tool, const Frame& frame, std::uint32_t node, ContactState state,
-            const Place& place) noexcept;
-  void hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept;
-  void add(NodeConstraint& constraint, std::uint32_t node, ContactState state, const Place& place,
-           const Friction& friction) noexcept;
+  NodeConstraint& hold(std::uint32_t tool, const Frame& frame, std::uint32_t node, ContactState state,
+                       const Place& place) noexcept;
+  NodeConstraint& hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept;
+  void release(std::uint32_t node) noexcept;
+  NodeConstraint& add(NodeConstraint& constraint, std::uint32_t node, ContactState state, const Place& place,
+                      const Friction& friction) noexcept;
 
   std::vector<Tool> tools_;
   std::vector<VecArray> corners_;  // of each tool, see tool_bounds.hpp
@@ -102,6 +111,7 @@ class Contacts {
   ContactRule rule_;
   ReservedVector<NodeConstraint> constraints_, previous_;
   ReservedVector<Place> places_, previous_places_;
+  ReservedVector<std::uint32_t> roused_;
   std::vector<Use> uses_;                  // of each node
   std::vector<std::uint32_t> last_faces_;  // that each node was found outside of; a guess, changes no result
 };

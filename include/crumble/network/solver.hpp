@@ -62,6 +62,10 @@ class NetworkSolver : public NodeSource {
   /// The spring's stiffness from now on is `share` of its unbroken one: 1 intact, 0 gone, between while it fades.
   virtual void set_share(std::uint32_t spring, double share) noexcept = 0;
 
+  /// A frozen node stays where it is, at rest, whatever pulls on it; it must not be held. `place` moves it all the
+  /// same.
+  virtual void set_frozen(std::uint32_t node, bool frozen) noexcept = 0;
+
   /// The whole of stage 3: Eq (5), contact filter, Eqs (3) and (4). At most one constraint per node. No allocation.
   /// A spring shorter than the root of the smallest normal number pulls nowhere. A node that would leave the world
   /// (1 km, 1 km/s, not a number) stays, see lost_node().
@@ -76,10 +80,11 @@ class NetworkSolver : public NodeSource {
   /// Springs + external at the present positions, N (node_count); springs that are too long with cut_share. Works them
   /// out: not for the servo loop.
   virtual void read_forces(VecSpan forces) const = 0;
-  virtual void read_positions(VecSpan positions) const noexcept = 0;
+  /// Of nodes first, first + 1, ... as many as there is room for.
+  virtual void read_positions(std::uint32_t first, VecSpan positions) const noexcept = 0;
   virtual void read_velocities(VecSpan velocities) const noexcept = 0;
 
-  /// All bits of positions and velocities; load() also mends all springs. Throws Error(corrupt).
+  /// All bits of positions and velocities; load() also mends all springs and frees frozen nodes. Throws Error(corrupt).
   virtual void add_to(Hash& hash) const noexcept = 0;
   virtual void save(ByteWriter& out) const = 0;
   virtual void load(ByteReader& in) = 0;

@@ -23,6 +23,7 @@ struct NodeConstraint {
   Vec3 velocity = Vec3::Zero();  // of the holder's surface at the node, m/s
   double static_friction = 0;    // Coulomb, dimensionless
   double dynamic_friction = 0;
+  double approach = 0;           // normal speed at which holder and node met, m/s; of a fresh contact
   Vec3 reaction = Vec3::Zero();  // out: force that the holder puts on the node, N
 };
 
