@@ -3,11 +3,46 @@
 #include <gtest/gtest.h>
 
 #include "states.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace crumble {
 namespace {
 
 using namespace fracture_test;
+
+/// Inertia of a point mass.
+Mat3 point_inertia(double mass, const Vec3& arm) {
+  Mat3 inertia;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) inertia(i, j) = mass * ((i == j ? dot(arm, arm) : 0) - arm[i] * arm[j]);
+  }
+  return inertia;
+}
+
+/// Of a box of equal point masses, `counts` along the axes, `spacing` apart, about its middle.
+Mat3 box_inertia(double mass, const Vec3& counts, double spacing) {
+  const double all = mass * counts.x() * counts.y() * counts.z();
+  Vec3 squares;  // mean square distance along each axis
+  for (int axis = 0; axis < 3; ++axis) squares[axis] = spacing * spacing * (counts[axis] * counts[axis] - 1) / 12;
+  Mat3 inertia = Mat3::Zero();
+  for (int axis = 0; axis < 3; ++axis) inertia(axis, axis) = all * (squares[(axis + 1) % 3] + squares[(axis + 2) % 3]);
+  return inertia;
+}
+
+/// A body with the labels of a random state; some fragments removed.
+struct Labelled {
+  explicit Labelled(double cut_share, bool remove) : mesh(make_lattice_box({0.03, 0.025, 0.02}, 0.005)) {
+    Random random(24);
+    FragmentLabeler labeler(mesh.node_count(), mesh.springs);
+    count = labeler.label(random_flags(mesh.springs.size(), cut_share, random));
+    labels.assign(labeler.labels().begin(), labeler.labels().end());
+    if (!remove) return;
+    for (std::uint32_t& label : labels) label = label % 3 == 1 ? kNoFragment : label;
+  }
+  TetMesh mesh;
+  std::vector<std::uint32_t> labels;
+  std::size_t count;
+};
 
 TEST(Fragments, EqualFloodingAfterEveryStepOfRandomCuts) {
   Random random(21);
@@ -100,6 +135,141 @@ TEST(Fragments, BrokenTetrahedronIsSharedByCorners) {
   EXPECT_NEAR(fragments[1].rest_volume, 3.0 / 24, 1e-15);
   EXPECT_EQ(fragments[0].tetrahedron_count + fragments[1].tetrahedron_count, 0u);
   EXPECT_NEAR(norm(fragments[1].center - Vec3(1, 1, 1) / 3), 0, 1e-15);
+}
+
+TEST(Fragments, InertiaOfABoxOfEqualMasses) {
+  // 7 x 5 x 6 nodes, moved away from the origin; whole, and in two with 3 and 4 layers along x
+  TetMesh mesh = make_lattice_box({0.03, 0.02, 0.025}, 0.005);
+  const Vec3 offset(0.3, -0.2, 0.7);
+  const double mass = 2e-5;
+  const std::vector<double> masses(mesh.node_count(), mass);
+  VecArray positions(mesh.node_count());
+  std::vector<std::uint32_t> one(mesh.node_count()), two(mesh.node_count());
+  for (std::size_t i = 0; i < mesh.node_count(); ++i) {
+    positions.set(i, mesh.positions[i] + offset);
+    two[i] = mesh.positions[i].x() > -0.0025;
+  }
+  std::vector<Fragment> whole(1), halves(2);
+  measure_fragments(mesh, one, masses, positions, whole);
+  measure_fragments(mesh, two, masses, positions, halves);
+
+  const auto expect_inertia = [](const Mat3& inertia, const Mat3& expected) {
+    EXPECT_LT((inertia - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.trace()) << inertia << "\n" << expected;
+  };
+  expect_inertia(whole[0].inertia, box_inertia(mass, {7, 5, 6}, 0.005));
+  expect_inertia(halves[0].inertia, box_inertia(mass, {3, 5, 6}, 0.005));
+  expect_inertia(halves[1].inertia, box_inertia(mass, {4, 5, 6}, 0.005));
+  Mat3 joined = Mat3::Zero();  // parallel axes
+  for (const Fragment& half : halves) {
+    joined += half.inertia + point_inertia(half.mass, half.center - whole[0].center);
+  }
+  expect_inertia(joined, whole[0].inertia);
+  EXPECT_NEAR(norm(whole[0].low - (offset + Vec3(-0.015, 0, -0.0125))), 0, 1e-15);
+  EXPECT_NEAR(norm(whole[0].high - (offset + Vec3(0.015, 0.02, 0.0125))), 0, 1e-15);
+  EXPECT_NEAR(halves[0].high.x(), offset.x() - 0.005, 1e-15);
+  EXPECT_NEAR(halves[1].low.x(), offset.x(), 1e-15);
+}
+
+TEST(Fragments, MeasuresEqualSumsOverTheirNodes) {
+  Random random(25);
+  const Labelled body(0.8, true);
+  const std::size_t node_count = body.mesh.node_count();
+  std::vector<double> masses;
+  VecArray positions(node_count), velocities(node_count);
+  for (std::size_t i = 0; i < node_count; ++i) {
+    masses.push_back(random.uniform(1e-5, 3e-5));
+    positions.set(i, body.mesh.positions[i] + Vec3(random.uniform(), random.uniform(), 1) * 1e-2);
+    velocities.set(i, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  }
+  std::vector<Fragment> fragments(body.count), resting(body.count);
+  measure_fragments(body.mesh, body.labels, masses, positions, fragments, velocities);
+  measure_fragments(body.mesh, body.labels, masses, positions, resting);
+  ASSERT_GT(body.count, 6u);
+  for (std::uint32_t id = 0; id < body.count; ++id) {
+    std::uint32_t count = 0, least = 0;
+    double mass = 0, rest_volume = 0;
+    Vec3 moment = Vec3::Zero(), momentum = Vec3::Zero(), low = Vec3::Zero(), high = Vec3::Zero();
+    Mat3 about_origin = Mat3::Zero();
+    for (std::uint32_t i = 0; i < node_count; ++i) {
+      if (body.labels[i] != id) continue;
+      if (count++ == 0) least = i, low = high = positions[i];
+      mass += masses[i], rest_volume += body.mesh.node_volumes[i];
+      moment += masses[i] * positions[i], momentum += masses[i] * velocities[i];
+      about_origin += point_inertia(masses[i], positions[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], positions[i][axis]), high[axis] = std::max(high[axis], positions[i][axis]);
+      }
+    }
+    const Fragment& fragment = fragments[id];
+    ASSERT_EQ(fragment.node_count, count);
+    ASSERT_EQ(count == 0, id % 3 == 1);
+    EXPECT_EQ(fragment.least_node, least);
+    EXPECT_EQ(fragment.low, low);
+    EXPECT_EQ(fragment.high, high);
+    EXPECT_NEAR(fragment.mass, mass, 1e-12 * mass);
+    EXPECT_NEAR(fragment.rest_volume, rest_volume, 1e-12 * rest_volume);
+    EXPECT_NEAR(norm(fragment.mass * fragment.center - moment), 0, 1e-12 * norm(moment));
+    EXPECT_NEAR(norm(fragment.mass * fragment.velocity - momentum), 0, 1e-12 * mass);
+    const Mat3 expected = about_origin - point_inertia(fragment.mass, fragment.center);
+    EXPECT_LT((fragment.inertia - expected).cwiseAbs().maxCoeff(), 1e-12 * (1e-20 + about_origin.trace()));
+    EXPECT_EQ(resting[id].velocity, Vec3(Vec3::Zero()));
+    EXPECT_EQ(resting[id].inertia, fragment.inertia);
+  }
+}
+
+TEST(FragmentLists, EqualASearchThroughTheBody) {
+  for (const double share : {0.0, 0.5, 0.8, 0.9, 1.0}) {
+    for (const bool remove : {false, true}) {
+      const Labelled body(share, remove);
+      FragmentLists lists(body.mesh);
+      EXPECT_TRUE(lists.nodes(0).empty());
+      // before, another state with more fragments: nothing of it may be left
+      std::vector<std::uint32_t> alone(body.mesh.node_count());
+      std::iota(alone.begin(), alone.end(), 0u);
+      lists.update(alone, alone.size());
+      EXPECT_EQ(lists.nodes(17).front(), 17u);
+      lists.update(body.labels, body.count);
+      std::vector<Fragment> fragments(body.count);
+      measure_fragments(body.mesh, body.labels, std::vector<double>(alone.size(), 1), VecArray(body.mesh.positions),
+                        fragments);
+      for (std::uint32_t id = 0; id < body.count; ++id) {
+        std::vector<std::uint32_t> nodes, tetrahedra;
+        for (std::uint32_t i = 0; i < body.labels.size(); ++i) {
+          if (body.labels[i] == id) nodes.push_back(i);
+        }
+        for (std::uint32_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
+          const auto& corners = body.mesh.tetrahedra[t];
+          if (std::count_if(corners.begin(), corners.end(), [&](auto c) { return body.labels[c] == id; }) == 4) {
+            tetrahedra.push_back(t);
+          }
+        }
+        ASSERT_TRUE(std::equal(nodes.begin(), nodes.end(), lists.nodes(id).begin(), lists.nodes(id).end())) << id;
+        ASSERT_TRUE(
+            std::equal(tetrahedra.begin(), tetrahedra.end(), lists.tetrahedra(id).begin(), lists.tetrahedra(id).end()))
+            << id;
+        ASSERT_EQ(fragments[id].tetrahedron_count, tetrahedra.size());
+      }
+      EXPECT_TRUE(lists.nodes(static_cast<std::uint32_t>(body.count)).empty());
+      EXPECT_TRUE(lists.tetrahedra(kNoFragment).empty());
+    }
+  }
+}
+
+TEST(FragmentLists, TakesNoMemory) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
+  const Labelled body(0.8, true);
+  const std::vector<double> masses(body.mesh.node_count(), 1e-5);
+  const VecArray positions(body.mesh.positions);
+  std::vector<Fragment> fragments(body.count);
+  FragmentLists lists(body.mesh);
+  std::size_t allocations = 0;
+  {
+    AllocationCounter counter;
+    lists.update(body.labels, body.count);
+    measure_fragments(body.mesh, body.labels, masses, positions, fragments, positions);
+    allocations = counter.count();
+  }
+  EXPECT_EQ(allocations, 0u);
 }
 
 }  // namespace
