@@ -1,5 +1,7 @@
 #include "crumble/sim/recording.hpp"
 
+#include <algorithm>
+
 #include "crumble/base/file.hpp"
 #include "crumble/base/hash.hpp"
 
@@ -7,7 +9,7 @@ namespace crumble {
 namespace {
 
 constexpr std::uint64_t kRecordingMagic = 0x31304345524d5243u;  // "CRMREC01"
-constexpr std::uint32_t kRecordingVersion = 1;
+constexpr std::uint32_t kRecordingVersion = 2;
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
   Hash hash;
@@ -45,6 +47,22 @@ void Recording::add(std::span<const Pose> poses, std::uint64_t state_hash) {
   hashes_.push_back(state_hash);
 }
 
+void Recording::add_fragment_state(std::uint32_t fragment, FragmentState state) {
+  changes_.push_back({hashes_.size(), fragment, state});
+}
+
+void Recording::apply_fragment_states(std::size_t step, Simulation& sim) const {
+  const auto first = std::lower_bound(changes_.begin(), changes_.end(), step,
+                                      [](const FragmentChange& change, std::size_t at) { return change.step < at; });
+  try {
+    for (auto change = first; change != changes_.end() && change->step == step; ++change) {
+      sim.set_fragment_state(change->fragment, change->state);
+    }
+  } catch (const Error& error) {
+    throw Error(Code::corrupt, "recording, before step " + std::to_string(step) + ": " + error.what());
+  }
+}
+
 Simulation Recording::start(const StepSettings& how) const {
   ByteReader in(definition_, "recording");
   SimulationDef def = read_definition(in);
@@ -65,6 +83,10 @@ void Recording::save(const std::filesystem::path& path) const {
   out.put(static_cast<std::uint64_t>(hashes_.size()));
   for (const Pose& pose : poses_) put(out, pose);
   for (const std::uint64_t hash : hashes_) out.put(hash);
+  out.put(static_cast<std::uint64_t>(changes_.size()));
+  for (const FragmentChange& change : changes_) {
+    out.put(change.step), out.put(change.fragment), out.put(static_cast<std::uint8_t>(change.state));
+  }
   out.put(checksum(out.bytes()));
   write_bytes(path, out.bytes());
 }
@@ -92,12 +114,24 @@ Recording Recording::load(const std::filesystem::path& path) {
   recording.tool_count_ = static_cast<std::size_t>(tools);
   for (std::uint64_t i = 0; i < tools * steps; ++i) recording.poses_.push_back(get_pose(in));
   for (std::uint64_t i = 0; i < steps; ++i) recording.hashes_.push_back(in.get<std::uint64_t>());
+  const auto changes = in.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < changes; ++i) {
+    const auto step = in.get<std::uint64_t>();
+    const auto fragment = in.get<std::uint32_t>();
+    const auto state = in.get<std::uint8_t>();
+    const std::uint64_t before = recording.changes_.empty() ? 0 : recording.changes_.back().step;
+    if (step < before || step > steps || state > static_cast<std::uint8_t>(FragmentState::removed)) {
+      throw Error(Code::corrupt, name + " holds an impossible change of a fragment");
+    }
+    recording.changes_.push_back({step, fragment, static_cast<FragmentState>(state)});
+  }
   return recording;
 }
 
 std::optional<std::size_t> replay(const Recording& recording, Simulation& sim,
                                   const std::function<bool(const Simulation&)>& after_step) {
   for (std::size_t step = 0; step < recording.step_count(); ++step) {
+    recording.apply_fragment_states(step, sim);
     sim.step(recording.poses(step));
     if (sim.state_hash() != recording.state_hash(step)) return step;
     if (after_step && !after_step(sim)) break;

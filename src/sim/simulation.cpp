@@ -60,6 +60,11 @@ SolverSettings solver_settings(const SimulationDef& def, std::uint32_t fade_subs
   return settings;
 }
 
+// A cut and a split per spring at most, a beginning and an end of contact per node.
+std::size_t event_capacity(const SpringNetwork& network) {
+  return std::min(Simulation::kMaxEvents, 2 * (network.spring_count() + network.node_count()));
+}
+
 }  // namespace
 
 Simulation::Simulation(SimulationDef def)
@@ -76,15 +81,21 @@ Simulation::Simulation(SimulationDef def)
       intact_(network_.spring_count(), 1),
       new_cuts_(network_.spring_count()),
       start_poses_(def_.tools.size()),
+      fragments_(network_.node_count(), network_.springs),
+      fragment_states_(network_.node_count()),
+      is_debris_(network_.node_count()),
+      event_log_(network_.node_count(), event_capacity(network_)),
       wrenches_(def_.tools.size()),
       history_(def_.tools.size()) {
   positions_ = velocities_ = before_solve_ = VecArray(network_.node_count());
   solver_->set_external(external_);
   fading_.reserve(network_.spring_count());
+  debris_.reserve(network_.node_count());
   counters_.guarded_nodes = coefficients_.guarded_nodes;
 }
 
 bool Simulation::accept(std::span<const Pose> poses) noexcept {
+  event_log_.begin_step(info_.step, end_of_step());  // a refused step has no events
   if (info_.status == Code::diverged) return false;
   const bool good = poses.size() == def_.tools.size() && std::all_of(poses.begin(), poses.end(), is_valid);
   info_.status = good ? Code{} : Code::bad_pose;
@@ -100,6 +111,10 @@ void Simulation::begin_step() noexcept {
   info_.new_cuts = 0;
   for (std::size_t tool = 0; tool < start_poses_.size(); ++tool) start_poses_[tool] = contacts_.pose(tool);
   forget_copies();
+}
+
+double Simulation::end_of_step() const noexcept {
+  return static_cast<double>(info_.step + 1) * (def_.step.tau * def_.step.iterations);
 }
 
 // Eq (6): the tool feels the opposite of what it does to the nodes.
@@ -126,6 +141,8 @@ void Simulation::sum_reaction() noexcept {
 
 void Simulation::finish_step() noexcept {
   contacts_.drop_released();
+  log_contacts();
+  counters_.dropped_events += event_log_.dropped();
   if (coefficients_.guarded_nodes > 0) info_.flags |= kGuarded;
   for (std::size_t tool = 0; tool < def_.tools.size(); ++tool) {
     if (contacts_.jumped(tool)) info_.flags |= kToolJumped, ++counters_.tool_jumps;
@@ -134,8 +151,8 @@ void Simulation::finish_step() noexcept {
   counters_.suspended_steps += (info_.flags & kContactSuspended) != 0;
   counters_.cuts += info_.new_cuts;
   if (find_divergence()) return;
+  info_.time = end_of_step();
   ++info_.step;
-  info_.time = static_cast<double>(info_.step) * (def_.step.tau * def_.step.iterations);
 }
 
 // A node that would go farther than 1 km, faster than 1 km/s or to what is not a number stays, and stops everything.
@@ -173,6 +190,8 @@ void Simulation::reset() noexcept {
   std::fill(intact_.begin(), intact_.end(), std::uint8_t{1});
   fading_.clear();
   contacts_.clear();
+  fragments_.reset();
+  std::fill(fragment_states_.begin(), fragment_states_.end(), FragmentState::active);
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   std::fill(history_.begin(), history_.end(), std::array<Wrench, 5>{});
   info_ = {};
@@ -180,6 +199,7 @@ void Simulation::reset() noexcept {
   ledger_ = {};
   counters_ = {};
   counters_.guarded_nodes = coefficients_.guarded_nodes;
+  event_log_.restart(0, {});
 }
 
 }  // namespace crumble

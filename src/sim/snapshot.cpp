@@ -1,11 +1,19 @@
+#include <algorithm>
+#include <string>
+
 #include "crumble/base/hash.hpp"
 #include "crumble/sim/simulation.hpp"
 
 namespace crumble {
 namespace {
 
-constexpr std::uint64_t kSnapshotMagic = 0x3230504e534d5243u;  // "CRMSNP" and the version, "02"
+constexpr std::uint64_t kSnapshotMagic = 0x3330504e534d5243u;  // "CRMSNP" and the version, "03"
 constexpr std::uint64_t kNameOfMagic = 0x0000ffffffffffffu;
+constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 53;  // a double, which the time is, counts no further
+
+void require(bool good, const char* what) {
+  if (!good) throw Error(Code::corrupt, std::string("snapshot holds an impossible ") + what);
+}
 
 void put(ByteWriter& out, const Wrench& w) {
   for (const Vec3& v : {w.force, w.torque}) out.put(v.x()), out.put(v.y()), out.put(v.z());
@@ -15,6 +23,23 @@ void get(ByteReader& in, Wrench& w) {
   for (Vec3* v : {&w.force, &w.torque}) {
     for (int axis = 0; axis < 3; ++axis) (*v)[axis] = in.get<double>();
   }
+}
+
+StepInfo get_info(ByteReader& in, const Simulation& sim) {
+  StepInfo info;
+  info.status = static_cast<Code>(in.get<std::int32_t>());
+  info.flags = in.get<std::uint32_t>();
+  info.step = in.get<std::uint64_t>();
+  info.time = in.get<double>();
+  info.contacts = in.get<std::uint32_t>();
+  info.new_cuts = in.get<std::uint32_t>();
+  info.bad_node = in.get<std::uint32_t>();
+  const StepSettings& how = sim.definition().step;
+  require(info.status == Code{} || info.status == Code::bad_pose || info.status == Code::diverged, "status");
+  require(info.step <= kMostSteps, "number of steps");
+  require(info.time == static_cast<double>(info.step) * (how.tau * how.iterations), "time");
+  require(info.bad_node < sim.mesh().node_count(), "lost node");
+  return info;
 }
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
@@ -32,8 +57,10 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
   out.put(static_cast<std::int32_t>(info_.status));
   out.put(info_.flags), out.put(info_.step), out.put(info_.time);
   out.put(info_.contacts), out.put(info_.new_cuts), out.put(info_.bad_node);
-  out.put(counters_.cuts), out.put(counters_.tool_jumps), out.put(counters_.suspended_steps),
-      out.put(counters_.bad_poses);
+  for (const std::uint64_t count : {counters_.cuts, counters_.tool_jumps, counters_.suspended_steps,
+                                    counters_.bad_poses, counters_.dropped_events, counters_.woken}) {
+    out.put(count);
+  }
   for (const double row : {ledger_.stored, ledger_.tool_work, ledger_.external_work, ledger_.dissipated, ledger_.cut,
                            ledger_.gain_max_relative}) {
     out.put(row);
@@ -48,6 +75,8 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
     for (const Wrench& past : history_[tool]) put(out, past);
   }
   contacts_.save(out);
+  fragments_.save(out);
+  for (std::uint32_t f = 0; f < fragments_.count(); ++f) out.put(static_cast<std::uint8_t>(fragment_states_[f]));
   out.put(checksum(out.bytes()));
   return std::move(out.bytes());
 }
@@ -84,15 +113,10 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
 
   // read everything into copies first, so that a bad snapshot changes nothing
   Simulation next = *this;
-  next.info_.status = static_cast<Code>(in.get<std::int32_t>());
-  next.info_.flags = in.get<std::uint32_t>();
-  next.info_.step = in.get<std::uint64_t>();
-  next.info_.time = in.get<double>();
-  next.info_.contacts = in.get<std::uint32_t>();
-  next.info_.new_cuts = in.get<std::uint32_t>();
-  next.info_.bad_node = in.get<std::uint32_t>();
+  next.info_ = get_info(in, *this);
   Counters& counters = next.counters_;
-  for (std::uint64_t* count : {&counters.cuts, &counters.tool_jumps, &counters.suspended_steps, &counters.bad_poses}) {
+  for (std::uint64_t* count : {&counters.cuts, &counters.tool_jumps, &counters.suspended_steps, &counters.bad_poses,
+                               &counters.dropped_events, &counters.woken}) {
     *count = in.get<std::uint64_t>();
   }
   EnergyLedger& ledger = next.ledger_;
@@ -104,19 +128,69 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
   next.forget_copies();
   next.intact_ = in.get_vector<std::uint8_t>();
   if (next.intact_.size() != network_.spring_count()) throw Error(Code::corrupt, "snapshot has another spring count");
+  require(std::all_of(next.intact_.begin(), next.intact_.end(), [](std::uint8_t flag) { return flag <= 1; }), "spring");
   next.load_fading(in);
   const auto cuts = in.get_vector<std::uint32_t>();
   if (cuts.size() != next.info_.new_cuts || cuts.size() > network_.spring_count()) {
     throw Error(Code::corrupt, "snapshot has an impossible number of cuts");
   }
+  const auto is_cut = [&](std::uint32_t spring) { return spring < next.intact_.size() && !next.intact_[spring]; };
+  require(std::all_of(cuts.begin(), cuts.end(), is_cut), "cut");
   std::copy(cuts.begin(), cuts.end(), next.new_cuts_.begin());
   for (std::size_t tool = 0; tool < wrenches_.size(); ++tool) {
     get(in, next.wrenches_[tool]);
     for (Wrench& past : next.history_[tool]) get(in, past);
   }
   next.contacts_.load(in);
+  next.load_fragments(in);
+  next.event_log_.restart(next.info_.step, next.contacts_.constraints());
   if (def_.step.energy_audit) next.ledger_.stored = next.stored_energy();
-  *this = std::move(next);
+  take_state(next);
+}
+
+// Definition and network stay untouched: a drawing thread may be reading the mesh.
+void Simulation::take_state(Simulation& from) noexcept {
+  solver_ = std::move(from.solver_);
+  contacts_ = std::move(from.contacts_);
+  stiffnesses_ = std::move(from.stiffnesses_);
+  intact_ = std::move(from.intact_);
+  new_cuts_ = std::move(from.new_cuts_);
+  fading_ = std::move(from.fading_);
+  fragments_ = std::move(from.fragments_);
+  fragment_states_ = std::move(from.fragment_states_);
+  event_log_ = std::move(from.event_log_);
+  wrenches_ = std::move(from.wrenches_);
+  history_ = std::move(from.history_);
+  info_ = from.info_;
+  profile_ = from.profile_;
+  counters_ = from.counters_;
+  ledger_ = from.ledger_;
+  forget_copies();
+}
+
+// Sleeping nodes stand still and touch nothing, removed ones belong to no fragment: all that follows from the states.
+void Simulation::load_fragments(ByteReader& in) {
+  fragments_.load(in);
+  counters_.asleep = counters_.removed = counters_.removed_nodes = 0;
+  std::fill(fragment_states_.begin(), fragment_states_.end(), FragmentState::active);
+  for (std::uint32_t f = 0; f < fragments_.count(); ++f) {
+    const auto state = in.get<std::uint8_t>();
+    const bool removed = fragments_.record(f).node_count == 0;
+    if (state > static_cast<std::uint8_t>(FragmentState::removed) || (state == 2) != removed) {
+      throw Error(Code::corrupt, "snapshot holds an impossible fragment state");
+    }
+    fragment_states_[f] = static_cast<FragmentState>(state);
+    counters_.removed += removed;
+    counters_.asleep += fragment_states_[f] == FragmentState::asleep;
+  }
+  for (std::uint32_t node = 0; node < network_.node_count(); ++node) {
+    const std::uint32_t fragment = fragments_.labels()[node];
+    if (fragment == kNoFragment) {
+      take_away(node);
+    } else if (fragment_states_[fragment] == FragmentState::asleep) {
+      let_sleep(node);
+    }
+  }
 }
 
 std::uint64_t Simulation::state_hash() const noexcept {
@@ -132,6 +206,8 @@ std::uint64_t Simulation::state_hash() const noexcept {
   for (const Wrench& w : wrenches_) {
     for (int axis = 0; axis < 3; ++axis) hash.add(w.force[axis]), hash.add(w.torque[axis]);
   }
+  fragments_.add_to(hash);
+  for (std::uint32_t f = 0; f < fragments_.count(); ++f) hash.add(static_cast<std::uint64_t>(fragment_states_[f]));
   return hash.value();
 }
 

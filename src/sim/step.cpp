@@ -36,6 +36,7 @@ const StepInfo& Simulation::step(std::span<const Pose> poses) noexcept {
     // (2) nodes that came to lie inside a tool are moved to its surface
     for (std::uint32_t place = 0; place < contacts_.place_count(); ++place) {
       contacts_.find(place, *solver_);
+      wake_roused();
       laps.end(profile_.find_contacts);
       contacts_.project(*solver_);
       laps.end(profile_.project_contacts);
@@ -54,6 +55,9 @@ const StepInfo& Simulation::step(std::span<const Pose> poses) noexcept {
       if (def_.step.energy_audit) audit_cut(), laps.skip();
     }
   }
+  track_fragments();
+  laps.end(profile_.cut_springs);
+
   // (5) the forces on the tools are summed for the hand, Eqs (6) and (7)
   sum_reaction();
   laps.end(profile_.sum_reaction);
@@ -87,6 +91,7 @@ void Simulation::cut_springs() noexcept {
       crumble::cut_springs(solver_->overlong(), intact_, std::span(new_cuts_).subspan(before)));
   fade_cut_springs();
   for (const std::uint32_t spring : new_cuts().last(info_.new_cuts - before)) {
+    log_cut(spring);
     fading_.push_back({spring, fade_substeps_ + after_move});
     fade(fading_.back());
   }

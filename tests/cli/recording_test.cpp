@@ -58,7 +58,7 @@ class RecordingTest : public testing::Test {
     for (std::size_t i = 0; i < 8; ++i) damaged[damaged.size() - 8 + i] = static_cast<std::uint8_t>(value >> 8 * i);
   }
   // Where the pose of a step begins; the hashes and the checksum stand behind the poses.
-  std::size_t pose_at(std::size_t step) const { return bytes.size() - 8 - kSteps * 8 - (kSteps - step) * kStepBytes; }
+  std::size_t pose_at(std::size_t step) const { return bytes.size() - 16 - kSteps * 8 - (kSteps - step) * kStepBytes; }
 
   TemporaryFolder folder;
   const std::string recording = folder.file("good.crec").string();
@@ -126,7 +126,7 @@ TEST_F(RecordingTest, DiffersWhenAPoseWasChanged) {
 
 TEST_F(RecordingTest, DiffersWhenAHashWasChanged) {
   Bytes damaged = bytes;
-  damaged[damaged.size() - 8 - 8 * 100] ^= 0x10;
+  damaged[damaged.size() - 16 - 8 * 100] ^= 0x10;
   repair_checksum(damaged);
   const Outcome outcome = replay_of(damaged);
   EXPECT_EQ(outcome.code, 1);

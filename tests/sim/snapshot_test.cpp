@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/hash.hpp"
 #include "crumble/sim/recording.hpp"
 #include "sim/press_rig.hpp"
 
@@ -38,6 +41,16 @@ TEST(Snapshot, ContinuesWithTheSameHashesAfterCutsInContactWhileSticking) {
   }
 }
 
+TEST(Snapshot, RestoringLeavesTheMeshWhereItIs) {
+  PressRig rig;
+  rig.press_to(0.001);
+  const Vec3* positions = rig.sim.mesh().positions.data();
+  const double* masses = rig.sim.network().masses.data();
+  rig.sim.restore(rig.sim.snapshot());
+  EXPECT_EQ(rig.sim.mesh().positions.data(), positions);
+  EXPECT_EQ(rig.sim.network().masses.data(), masses);
+}
+
 TEST(Snapshot, ABadOneIsRefusedAndChangesNothing) {
   PressRig rig;
   rig.press_to(0.012);
@@ -66,6 +79,52 @@ TEST(Snapshot, ABadOneIsRefusedAndChangesNothing) {
   EXPECT_EQ(refused(slab.sim.snapshot()), Code::version);
   other.sim.restore(good);
   EXPECT_EQ(other.sim.state_hash(), rig.sim.state_hash());
+}
+
+// What a host indexes, shows or rounds must be possible even where the checksum is right.
+TEST(Snapshot, OneThatIsWholeButImpossibleIsRefused) {
+  PressRig rig;
+  rig.press_to(0.014);
+  while (rig.sim.info().new_cuts == 0) rig.press();
+  const auto good = rig.sim.snapshot();
+  const auto code_with = [&](std::size_t at, auto value) {
+    auto bytes = good;
+    std::memcpy(&bytes[at], &value, sizeof value);
+    Hash hash;
+    hash.add(std::span<const std::uint8_t>(bytes).first(bytes.size() - 8));
+    const std::uint64_t sum = hash.value();
+    std::memcpy(&bytes[bytes.size() - 8], &sum, sizeof sum);
+    try {
+      rig.sim.restore(bytes);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return Code{};
+  };
+  constexpr std::size_t kStatus = 16, kStep = 24, kTime = 32, kBadNode = 48;
+  EXPECT_EQ(code_with(kStatus, std::int32_t{0}), Code{});
+  EXPECT_EQ(code_with(kStatus, std::int32_t{-999}), Code::corrupt);
+  EXPECT_EQ(code_with(kStep, rig.sim.info().step + 1), Code::corrupt);
+  EXPECT_EQ(code_with(kStep, ~std::uint64_t{0}), Code::corrupt);
+  for (const double time : {std::numeric_limits<double>::quiet_NaN(), 1e300, -1.0}) {
+    EXPECT_EQ(code_with(kTime, time), Code::corrupt) << time;
+  }
+  EXPECT_EQ(code_with(kBadNode, static_cast<std::uint32_t>(rig.sim.mesh().node_count())), Code::corrupt);
+  // Of an array, by its bytes. The last such: a list of springs may begin like that of the fading ones, which comes
+  // before.
+  const auto place_of = [&](const auto& values) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+    return static_cast<std::size_t>(std::find_end(good.begin(), good.end(), first, first + values.size_bytes()) -
+                                    good.begin());
+  };
+  const std::size_t flags = place_of(rig.sim.intact());
+  EXPECT_EQ(code_with(flags, std::uint8_t{2}), Code::corrupt);
+  const std::uint64_t count = rig.sim.new_cuts().size();
+  std::vector<std::uint32_t> list{static_cast<std::uint32_t>(count), 0};  // its length, then the springs
+  list.insert(list.end(), rig.sim.new_cuts().begin(), rig.sim.new_cuts().end());
+  const std::size_t cuts = place_of(std::span<const std::uint32_t>(list)) + 8;
+  EXPECT_EQ(code_with(cuts, static_cast<std::uint32_t>(rig.sim.intact().size())), Code::corrupt);
+  EXPECT_EQ(code_with(cuts, rig.sim.new_cuts()[0]), Code{});
 }
 
 TEST(Reset, IsAFreshSimulation) {

@@ -17,11 +17,15 @@ class Recording {
   /// After each step: the poses it was given and the state it led to. Allocates; call it outside the servo loop's
   /// budget.
   void add(std::span<const Pose> poses, std::uint64_t state_hash);
+  /// After each Simulation::set_fragment_state between steps.
+  void add_fragment_state(std::uint32_t fragment, FragmentState state);
 
   std::size_t step_count() const { return hashes_.size(); }
   std::size_t tool_count() const { return tool_count_; }
   std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
   std::uint64_t state_hash(std::size_t step) const { return hashes_[step]; }
+  /// Does to `sim` what the host did to its fragments before the step. Throws Error(corrupt) when that cannot be done.
+  void apply_fragment_states(std::size_t step, Simulation& sim) const;
   /// A simulation at the recording's start. Of `how` only what changes no bit counts: audit, kernel, threads.
   Simulation start(const StepSettings& how = {}) const;
 
@@ -30,11 +34,17 @@ class Recording {
   static Recording load(const std::filesystem::path& path);
 
  private:
+  struct FragmentChange {
+    std::uint64_t step;  // that came after it
+    std::uint32_t fragment;
+    FragmentState state;
+  };
   Recording() = default;
   std::vector<std::uint8_t> definition_, snapshot_;
   std::size_t tool_count_ = 0;
   std::vector<Pose> poses_;  // (step_count x tool_count)
   std::vector<std::uint64_t> hashes_;
+  std::vector<FragmentChange> changes_;
 };
 
 /// The first step whose state differs from the recorded one; nothing when all agree.

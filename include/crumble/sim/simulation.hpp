@@ -10,54 +10,15 @@
 #include "crumble/base/error.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/contact/contacts.hpp"
-#include "crumble/fracture/fragments.hpp"
+#include "crumble/fracture/fragment_tracker.hpp"
 #include "crumble/network/energy.hpp"
 #include "crumble/network/solver.hpp"
+#include "crumble/sim/debris.hpp"
 #include "crumble/sim/definition.hpp"
+#include "crumble/sim/event_log.hpp"
+#include "crumble/sim/step_info.hpp"
 
 namespace crumble {
-
-/// What the body does to a tool: force in N, torque in N m about the tool's origin, in scene axes.
-struct Wrench {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
-};
-
-/// What the last step did. The force is valid whatever the flags say.
-enum StepFlag : std::uint32_t {
-  kToolJumped = 1u << 0,        // a tool moved more than 8 half thicknesses: its contact is suspended
-  kContactSuspended = 1u << 1,  // a tool that jumped, or began inside the body, has not been outside since
-  kGuarded = 1u << 2,           // the guard raised the drag of some nodes (see Counters::guarded_nodes)
-};
-struct StepInfo {
-  Code status{};               // 0; bad_pose: nothing moved, force 0; diverged: frozen until reset
-  std::uint32_t flags = 0;     // StepFlag bits
-  std::uint64_t step = 0;      // steps done since the start
-  double time = 0;             // simulated seconds
-  std::uint32_t contacts = 0;  // nodes that tools hold
-  std::uint32_t new_cuts = 0;  // springs cut in this step
-  std::uint32_t bad_node = 0;  // with status diverged: the first node that left the world
-};
-
-/// Wall seconds that the stages of the last step took; same names and order as in step.cpp.
-struct StepProfile {
-  double move_tool = 0;
-  double find_contacts = 0;
-  double project_contacts = 0;
-  double solve_network = 0;
-  double cut_springs = 0;
-  double sum_reaction = 0;
-  double finish_step = 0;
-};
-
-/// Sums since the start: what was guarded, clamped, suspended or refused.
-struct Counters {
-  std::uint64_t guarded_nodes = 0;  // nodes with drag raised by the guard (a property of the body and tau)
-  std::uint64_t cuts = 0;           // springs cut
-  std::uint64_t tool_jumps = 0;
-  std::uint64_t suspended_steps = 0;  // steps in which some tool's contact was suspended
-  std::uint64_t bad_poses = 0;        // steps refused for a pose that is not finite or not a rotation
-};
 
 /// One thread at a time may use a simulation. Set-up throws Error; step() never throws, allocates, locks or calls the
 /// system, and gives the same bits in every build.
@@ -80,6 +41,7 @@ class Simulation {
   std::span<const NodeConstraint> contacts() const noexcept { return contacts_.constraints(); }
 
   const SimulationDef& definition() const noexcept { return def_; }
+  /// May be borrowed, by other threads too: nothing touches it until the simulation is moved, assigned to or destroyed.
   const TetMesh& mesh() const noexcept { return def_.mesh; }
   const SpringNetwork& network() const noexcept { return network_; }
   const StepCoefficients& coefficients() const noexcept { return coefficients_; }
@@ -89,11 +51,35 @@ class Simulation {
   /// By node, metres and m/s. The first call after a step fetches them all from the solver; valid until the next step.
   VecView positions() const noexcept;
   VecView velocities() const noexcept;
+  /// Positions of nodes first, first + 1, ... as many as there is room for, straight from the solver.
+  void read_positions(std::uint32_t first, VecSpan positions) const noexcept {
+    solver_->read_positions(first, positions);
+  }
   /// Springs + gravity at the present positions, N. Works them out: not for the servo loop; allocates.
   VecArray forces() const;
   std::span<const std::uint8_t> intact() const noexcept { return intact_; }
   /// Springs cut by the last step, ascending.
   std::span<const std::uint32_t> new_cuts() const noexcept { return {new_cuts_.data(), info_.new_cuts}; }
+
+  /// Stable ids, nodes and parents of the fragments; kNoFragment for nodes of removed ones.
+  const FragmentTracker& fragments() const noexcept { return fragments_; }
+  /// By id.
+  std::span<const FragmentState> fragment_states() const noexcept {
+    return {fragment_states_.data(), fragments_.count()};
+  }
+  std::span<const std::uint32_t> node_fragments() const noexcept { return fragments_.labels(); }
+  /// What happened in the last step: cuts, then splits, then contacts.
+  std::span<const Event> events() const noexcept { return event_log_.events(); }
+  static constexpr std::size_t kMaxEvents = 65536;  // of one step
+
+  /// Throws Error(out_of_range): no such fragment.
+  FragmentState fragment_state(std::uint32_t fragment) const;
+  /// Between steps; part of the state, so a recording has to know of it. Scans all nodes; no allocation. Throws Error:
+  /// out_of_range (no such fragment), state (it has been removed).
+  void set_fragment_state(std::uint32_t fragment, FragmentState state);
+  /// Fragments, not removed, with at most max_nodes nodes that are all slower than max_speed and not held by a tool,
+  /// ascending; valid until the next call. No allocation.
+  std::span<const std::uint32_t> find_debris(const DebrisRule& rule) noexcept;
 
   /// Back to rest and unbroken; also clears a latched fault.
   void reset() noexcept;
@@ -102,7 +88,7 @@ class Simulation {
   /// Error(corrupt, version) and then changes nothing.
   std::vector<std::uint8_t> snapshot() const;
   void restore(std::span<const std::uint8_t> bytes);
-  /// Hash of positions, velocities, cuts, contacts and wrenches: equal bits, equal hash.
+  /// Hash of positions, velocities, cuts, contacts, wrenches and fragments: equal bits, equal hash.
   std::uint64_t state_hash() const noexcept;
 
  private:
@@ -112,6 +98,7 @@ class Simulation {
 
   bool accept(std::span<const Pose> poses) noexcept;
   void begin_step() noexcept;
+  double end_of_step() const noexcept;
   void move_tools(std::span<const Pose> poses, std::uint32_t substep) noexcept;
   void solve_network() noexcept;
   void cut_springs() noexcept;
@@ -128,6 +115,17 @@ class Simulation {
   double stored_energy() const noexcept;
   void load_fading(ByteReader& in);
   bool find_divergence() noexcept;
+  void track_fragments() noexcept;
+  void wake_roused() noexcept;
+  void wake(std::uint32_t fragment) noexcept;
+  void put_to_sleep(std::uint32_t fragment) noexcept;
+  void remove(std::uint32_t fragment) noexcept;
+  void let_sleep(std::uint32_t node) noexcept;
+  void take_away(std::uint32_t node) noexcept;
+  void load_fragments(ByteReader& in);
+  void take_state(Simulation& from) noexcept;
+  void log_cut(std::uint32_t spring) noexcept;
+  void log_contacts() noexcept;
   void set_share(std::uint32_t spring, double share) noexcept;
   void forget_copies() noexcept { positions_known_ = velocities_known_ = false; }
 
@@ -151,6 +149,12 @@ class Simulation {
   VecArray before_solve_;  // positions, for the audit
   double kinetic_before_solve_ = 0;
 
+  FragmentTracker fragments_;
+  std::vector<FragmentState> fragment_states_;  // by id (node_count: there are never more)
+  std::vector<std::uint8_t> is_debris_;         // by id, of find_debris
+  ReservedVector<std::uint32_t> debris_;
+
+  EventLog event_log_;
   std::vector<Wrench> wrenches_;
   std::vector<std::array<Wrench, 5>> history_;  // of Eq (7), newest at step % 5
   StepInfo info_;
