@@ -2,7 +2,7 @@
 //   ./fracture_bench --benchmark_min_time=1
 #include <benchmark/benchmark.h>
 
-#include <numeric>
+#include <ctime>
 #include <vector>
 
 #include "crumble/base/random.hpp"
@@ -42,31 +42,68 @@ void label_fragments(benchmark::State& state) {
 }
 BENCHMARK(label_fragments)->Arg(0)->Arg(10)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-void extract_surface(benchmark::State& state) {
-  const std::vector<std::uint8_t> intact = intact_flags(state.range(0));
-  FragmentLabeler labeler(body().node_count(), body().springs);
-  labeler.label(intact);
+// A body a little deformed, as the extractor gets it.
+struct Scene {
+  explicit Scene(std::int64_t percent)
+      : positions(body().positions), intact(intact_flags(percent)), labeler(body().node_count(), body().springs) {
+    Random random(8);
+    for (double& x : positions.x) x += random.uniform(-2e-4, 2e-4);
+    labeler.label(intact);
+    labels.assign(labeler.labels().begin(), labeler.labels().end());
+  }
+  SurfaceInput now() const { return {positions, intact, labels, time}; }
+
+  VecArray positions;
+  std::vector<std::uint8_t> intact;
+  FragmentLabeler labeler;
+  std::vector<std::uint32_t> labels;
+  double time = 0;
+};
+
+// Everything anew: triangles, positions, normals.
+void rebuild_surface(benchmark::State& state) {
+  const Scene scene(state.range(0));
   SurfaceExtractor surface(body());
-  for (auto _ : state) surface.extract(intact, labeler.labels());
+  for (auto _ : state) surface.rebuild(scene.now());
   state.counters["triangles"] = static_cast<double>(surface.triangles().size());
   name_body(state);
 }
-BENCHMARK(extract_surface)->Arg(0)->Arg(10)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(rebuild_surface)->Arg(0)->Arg(10)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-// Rotation fits, positions and normals of a body a little deformed.
+// The next picture without a new cut: rotations, positions, normals.
 void update_surface(benchmark::State& state) {
-  const std::vector<std::uint8_t> intact = intact_flags(state.range(0));
-  FragmentLabeler labeler(body().node_count(), body().springs);
-  labeler.label(intact);
+  const Scene scene(state.range(0));
   SurfaceExtractor surface(body());
-  surface.extract(intact, labeler.labels());
-  VecArray positions(body().positions);
-  Random random(8);
-  for (double& x : positions.x) x += random.uniform(-2e-4, 2e-4);
-  for (auto _ : state) surface.update(positions);
+  surface.update(scene.now());
+  for (auto _ : state) surface.update(scene.now());
   name_body(state);
 }
 BENCHMARK(update_surface)->Arg(0)->Arg(10)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
+
+// The next picture after 50 cuts, in CPU time. Labels stay as they were.
+void update_surface_after_50_cuts(benchmark::State& state) {
+  const Scene before(state.range(0));
+  Scene after = before;
+  Random random(9);
+  for (int cut = 0; cut < 50;) {
+    std::uint8_t& flag = after.intact[random.below(after.intact.size())];
+    cut += flag;
+    flag = 0;
+  }
+  SurfaceExtractor surface(body());
+  std::size_t changed = 0;
+  for (auto _ : state) {
+    surface.rebuild(before.now());
+    surface.update(before.now());
+    const std::clock_t start = std::clock();
+    surface.update(after.now());
+    state.SetIterationTime(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    changed = surface.changed_triangles().size();
+  }
+  state.counters["changed"] = static_cast<double>(changed);
+  name_body(state);
+}
+BENCHMARK(update_surface_after_50_cuts)->Arg(0)->Arg(10)->Arg(50)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace crumble

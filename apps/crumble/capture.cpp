@@ -13,12 +13,10 @@ constexpr double kRefresh = 1.0 / 60;
 
 class SurfaceCamera {
  public:
-  explicit SurfaceCamera(const TetMesh& mesh) : extractor_(mesh), labeler_(mesh.node_count(), mesh.springs) {}
+  explicit SurfaceCamera(const TetMesh& mesh) : extractor_(mesh) {}
 
   void refresh(const Simulation& sim) {
-    labeler_.label(sim.intact());
-    extractor_.extract(sim.intact(), labeler_.labels());
-    extractor_.update(sim.positions());
+    extractor_.update({sim.positions(), sim.intact(), sim.node_fragments(), sim.info().time});
   }
 
   Capture take(const Simulation& sim, std::size_t step, const Pose& tool) {
@@ -39,7 +37,6 @@ class SurfaceCamera {
   }
 
   SurfaceExtractor extractor_;
-  FragmentLabeler labeler_;
 };
 
 }  // namespace

@@ -150,9 +150,8 @@ crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info
   return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
     if (info) check_struct_size("info", info->struct_size);
     if (!s.surface) s.surface = std::make_unique<crumble::SurfaceExtractor>(*s.mesh);
-    if (s.surface_stale) s.surface->extract(s.simulation.intact(), s.fragments().labels());
-    s.surface_stale = false;
-    s.surface->update(s.simulation.positions());
+    const crumble::Simulation& now = s.simulation;
+    s.surface->update({now.positions(), now.intact(), now.node_fragments(), now.info().time});
     if (!info) return CRUMBLE_OK;
     crumble_surface_info out{};
     out.vertex_count = static_cast<uint32_t>(s.surface->positions().size());

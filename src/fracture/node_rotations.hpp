@@ -5,23 +5,34 @@
 #include <span>
 #include <vector>
 
-#include "crumble/fracture/surface.hpp"
+#include "crumble/base/vec_array.hpp"
+#include "crumble/tetmesh/tet_mesh.hpp"
+#include "surface_arrays.hpp"
 
 namespace crumble {
 
 class NodeRotations {
  public:
-  explicit NodeRotations(const TetMesh& mesh);
+  /// What a cut does to a rotation shows within `settle` seconds.
+  NodeRotations(const TetMesh& mesh, double settle);
 
-  /// From here on fit() sees these springs, and only nodes passed to use() are fitted.
-  void start(std::span<const std::uint8_t> intact) noexcept;
+  /// Forgets everything; these are the springs from here on.
+  void reset(std::span<const std::uint8_t> intact) noexcept;
+
+  /// The rotation of a node is fitted while more vertices use than drop it.
   void use(std::uint32_t node) noexcept;
-  /// Drops what is remembered of nodes that use() has not named since start().
-  void forget_unused() noexcept;
+  void drop(std::uint32_t node) noexcept { --uses_[node]; }
 
-  void fit(VecView positions) noexcept;
-  /// Of a node in use, after fit().
-  const Mat3& operator[](std::size_t node) const noexcept { return rotations_[node]; }
+  /// Fits every node in use, and forgets the others.
+  void fit(VecView positions, double time) noexcept;
+  /// After fit(): a spring that was intact is cut. Shows nowhere before refit().
+  void cut(std::uint32_t spring) noexcept;
+  /// As of the moment of the last fit(): fits the nodes that have come into use since, and those whose springs have
+  /// been cut; these begin to settle.
+  void refit(VecView positions, double time) noexcept;
+
+  /// Of a node in use, as last fitted. A rotation but for what has still to settle.
+  const Mat3& operator[](std::size_t node) const noexcept { return drawn_[node]; }
 
  private:
   struct Neighbor {
@@ -29,19 +40,28 @@ class NodeRotations {
     std::uint32_t spring;
     Vec3 offset;  // at rest
   };
-  struct NodeState {
-    bool used = false;    // by the surface as last extracted
-    bool fitted = false;  // the rotation is one to remember
+  struct Turn {
+    Mat3 fit;      // to remember
+    Mat3 offset;   // of what was drawn from the fit, when it was freed
+    double freed;  // s
   };
 
   std::span<const Neighbor> neighbors(std::size_t node) const noexcept;
+  bool has_cut(std::size_t node) const noexcept;
   Mat3 spread(std::size_t node, VecView positions, bool count_cut) const noexcept;
+  void start_node(std::size_t node, VecView positions) noexcept;
+  void fit_node(std::size_t node, VecView positions) noexcept;
 
+  std::span<const Edge> springs_;
+  double settle_;
   std::vector<std::uint32_t> first_neighbor_;  // node_count + 1
   std::vector<Neighbor> neighbors_;
-  std::vector<std::uint8_t> intact_;
-  std::vector<NodeState> states_;
-  std::vector<Mat3> rotations_;
+  std::vector<std::uint8_t> intact_;   // per spring
+  std::vector<std::uint32_t> uses_;    // per node
+  std::vector<std::uint8_t> started_;  // per node: there is a turn to remember
+  UntouchedArray<Turn> turns_;         // per node
+  UntouchedArray<Mat3> drawn_;         // per node: fit + what is left of the offset
+  IndexSet new_nodes_, freed_nodes_;   // for refit()
 };
 
 }  // namespace crumble

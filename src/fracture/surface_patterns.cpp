@@ -65,15 +65,15 @@ void open_spring(const CutMask& mask, std::size_t spring, MaskPatterns& patterns
     // The facet lies in the faces (a, b, first) and (a, b, second), which are opposite `second` and `first`.
     VertexCode left = face_center(mask, second, side), right = face_center(mask, first, side);
     if (side == b) std::swap(left, right);
-    patterns.interior[patterns.interior_count++] = {{mid, left, in}, side};
-    patterns.interior[patterns.interior_count++] = {{mid, in, right}, side};
+    patterns.interior[patterns.interior_count++] = {{mid, left, in}, side, right};
+    patterns.interior[patterns.interior_count++] = {{in, right, mid}, side, left};
   }
 }
 
 // An outer face: itself while whole, else a fan about its centre that opens at the cut springs.
 void fill_skin(unsigned bits, const CutMask& mask, std::size_t face, MaskPatterns& patterns) {
   const auto add = [&](VertexCode a, VertexCode b, VertexCode c, Corner owner) {
-    patterns.skin[face][patterns.skin_count[face]++] = {{a, b, c}, owner};
+    patterns.skin[face][patterns.skin_count[face]++] = {{a, b, c}, owner, a};
   };
   const auto corner_code = [](Corner corner) { return make_code(kCorners + corner, 0); };
   const auto& corners = kTetFaces[face];

@@ -33,6 +33,9 @@ constexpr std::uint32_t copy_of(VertexCode code) {
 struct PatternTriangle {
   std::array<VertexCode, 3> vertices;  // counter-clockwise from outside if the ascending corners have positive volume
   std::uint8_t owner;                  // corner whose dual cell it bounds
+  /// With vertices a, b, c the facet's normal is that of (c - a) x (fourth - b): of a four-sided facet, its fourth
+  /// corner; of a facet that is one triangle, a.
+  VertexCode fourth = 0;
 };
 
 struct MaskPatterns {

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "crumble/base/transcendental.hpp"
+
 namespace crumble {
 namespace {
 
@@ -17,8 +19,6 @@ using surface_patterns::kCorners;
 using surface_patterns::kFaceCenters;
 using surface_patterns::kMiddles;
 using surface_patterns::kSiteCount;
-
-constexpr double kCosCrease = 0.76604444311897804;  // of 40 degrees
 
 SurfaceTopology::Cell sorted_cell(const TetMesh& mesh, std::size_t t) {
   const Tetrahedron& given = mesh.tetrahedra[t];
@@ -33,6 +33,7 @@ SurfaceTopology::Cell sorted_cell(const TetMesh& mesh, std::size_t t) {
   }
   SurfaceTopology::Cell cell{};
   cell.flipped = flipped;
+  cell.outer_faces.fill(SurfaceTopology::kNone);
   for (std::size_t k = 0; k < 4; ++k) cell.nodes[k] = given[order[k]];
   for (std::size_t s = 0; s < 6; ++s) {
     const std::size_t a = order[kTetEdges[s][0]], b = order[kTetEdges[s][1]];
@@ -77,7 +78,7 @@ struct FaceSide {
 std::vector<FaceSide> sorted_sides(const SurfaceTopology& topology) {
   std::vector<FaceSide> sides;
   for (std::uint32_t f = 0; f < topology.outer_faces.size(); ++f) {
-    const auto& [tetrahedron, face, slots] = topology.outer_faces[f];
+    const std::uint32_t tetrahedron = topology.outer_faces[f].tetrahedron, face = topology.outer_faces[f].face;
     for (std::uint8_t s = 0; s < 6; ++s) {
       const auto [a, b] = kTetEdges[s];
       if (a != face && b != face) sides.push_back({topology.cells[tetrahedron].springs[s], f, s});
@@ -101,7 +102,9 @@ struct DisjointSets {
   std::vector<std::uint32_t> parents;
 };
 
-std::uint32_t copy_count(std::size_t site) {
+// Copies that a site of an outer face can have; none for the tetrahedron's other sites.
+std::uint32_t copy_count(std::size_t site, std::size_t face) {
+  if ((surface_patterns::kSiteCorners[site] >> face & 1u) != 0) return 0;
   if (site < kFaceCenters) return 2;
   return site < kCenter ? 3 : 1;
 }
@@ -112,48 +115,125 @@ Vec3 outward_normal(const TetMesh& mesh, const SurfaceTopology::Cell& cell, std:
   return cell.flipped ? Vec3(-normal) : normal;
 }
 
-}  // namespace
-
-SurfaceTopology::SurfaceTopology(const TetMesh& mesh) {
-  cells.reserve(mesh.tetrahedra.size());
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) cells.push_back(sorted_cell(mesh, t));
-  find_faces(mesh);
-  share_normals(mesh);
+// The boundary's triangles with their corners ascending, sorted, each with its index.
+std::vector<std::pair<Triangle, std::uint32_t>> sorted_boundary(const TetMesh& mesh) {
+  std::vector<std::pair<Triangle, std::uint32_t>> sorted;
+  for (std::uint32_t b = 0; b < mesh.boundary.size(); ++b) {
+    Triangle nodes = mesh.boundary[b];
+    std::sort(nodes.begin(), nodes.end());
+    sorted.push_back({nodes, b});
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
 }
 
-void SurfaceTopology::find_faces(const TetMesh& mesh) {
-  const auto first_middle = static_cast<std::uint32_t>(mesh.node_count());
-  const auto first_face = static_cast<std::uint32_t>(first_middle + 2 * mesh.springs.size());
-  const std::vector<FaceUse> uses = sorted_face_uses(cells);
-  for (std::size_t i = 0; i < uses.size(); ++face_count) {
-    const bool shared = i + 1 < uses.size() && uses[i].nodes == uses[i + 1].nodes;
-    for (const std::size_t end = i + (shared ? 2 : 1); i < end; ++i) {
-      const std::uint32_t slot = static_cast<std::uint32_t>(first_face + 3 * face_count);
-      cells[uses[i].tetrahedron].first_slots[kFaceCenters + uses[i].face] = slot;
-      if (!shared) outer_faces.push_back({uses[i].tetrahedron, uses[i].face, {}});
+SurfaceTopology::OuterFace make_outer_face(const FaceUse& use, const Tetrahedron& nodes, const Triangle& boundary) {
+  SurfaceTopology::OuterFace outer{};
+  outer.tetrahedron = use.tetrahedron;
+  outer.face = use.face;
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      if (boundary[k] == nodes[c]) outer.boundary_corners[c] = k;
     }
   }
-  std::sort(outer_faces.begin(), outer_faces.end(), [](const OuterFace& a, const OuterFace& b) {
-    return a.tetrahedron != b.tetrahedron ? a.tetrahedron < b.tetrahedron : a.face < b.face;
-  });
-  const auto first_center = static_cast<std::uint32_t>(first_face + 3 * face_count);
-  for (std::uint32_t t = 0; t < cells.size(); ++t) {
-    Cell& cell = cells[t];
-    for (std::size_t s = 0; s < 6; ++s) cell.first_slots[kMiddles + s] = first_middle + 2 * cell.springs[s];
-    cell.first_slots[kCenter] = first_center + 4 * t;
-    for (std::size_t c = 0; c < 4; ++c) cell.first_slots[kCorners + c] = cell.nodes[c];
+  return outer;
+}
+
+// `items_of(t)` are the items of tetrahedron t.
+template <class ItemsOf>
+TetrahedronLists list_tetrahedra(std::size_t item_count, std::size_t tetrahedron_count, ItemsOf&& items_of) {
+  TetrahedronLists lists;
+  lists.first.assign(item_count + 1, 0);
+  for (std::uint32_t t = 0; t < tetrahedron_count; ++t) {
+    for (const std::uint32_t item : items_of(t)) ++lists.first[item + 1];
   }
-  slot_count = first_center + 4 * cells.size();
+  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+  lists.tetrahedra.resize(lists.first.back());
+  std::vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
+  for (std::uint32_t t = 0; t < tetrahedron_count; ++t) {
+    for (const std::uint32_t item : items_of(t)) lists.tetrahedra[next[item]++] = t;
+  }
+  return lists;
+}
+
+}  // namespace
+
+SurfaceTopology::SurfaceTopology(const TetMesh& mesh, double crease) {
+  cells.reserve(mesh.tetrahedra.size());
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) cells.push_back(sorted_cell(mesh, t));
+  const auto nodes_of = [&](std::size_t t) -> const auto& {
+    return cells[t].nodes;
+  };
+  const auto springs_of = [&](std::size_t t) -> const auto& {
+    return cells[t].springs;
+  };
+  node_tetrahedra = list_tetrahedra(mesh.node_count(), cells.size(), nodes_of);
+  spring_tetrahedra = list_tetrahedra(mesh.springs.size(), cells.size(), springs_of);
+  find_faces(mesh);
+  number_slots(mesh);
+  share_normals(mesh, crease);
+}
+
+// Outer faces come in the order of the sorted boundary, so each finds its triangle there next.
+void SurfaceTopology::find_faces(const TetMesh& mesh) {
+  const std::vector<FaceUse> uses = sorted_face_uses(cells);
+  const auto boundary = sorted_boundary(mesh);
+  auto outer = boundary.begin();
+  outer_faces.resize(boundary.size());
+  for (std::size_t i = 0; i < uses.size();) {
+    const bool shared = i + 1 < uses.size() && uses[i].nodes == uses[i + 1].nodes;
+    const FaceUse &use = uses[i], &other = uses[shared ? i + 1 : i];
+    i += shared ? 2 : 1;
+    for (const FaceUse* side : {&use, &other}) {  // the face's number for now; number_slots() makes it a slot
+      cells[side->tetrahedron].first_slots[kFaceCenters + side->face] = static_cast<std::uint32_t>(face_count);
+    }
+    face_tetrahedra_.push_back({use.tetrahedron, other.tetrahedron});
+    ++face_count;
+    if (shared) continue;
+    cells[use.tetrahedron].outer_faces[use.face] = outer->second;
+    outer_faces[outer->second] = make_outer_face(use, cells[use.tetrahedron].nodes, mesh.boundary[outer->second]);
+    ++outer;
+  }
   std::vector<std::uint8_t> is_outer(mesh.node_count());
   for (const Triangle& t : mesh.boundary) is_outer[t[0]] = is_outer[t[1]] = is_outer[t[2]] = 1;
   outer_node_count = static_cast<std::size_t>(std::count(is_outer.begin(), is_outer.end(), 1));
 }
 
+void SurfaceTopology::number_slots(const TetMesh& mesh) {
+  first_middle_slot_ = static_cast<std::uint32_t>(mesh.node_count());
+  first_face_slot_ = static_cast<std::uint32_t>(first_middle_slot_ + 2 * mesh.springs.size());
+  first_center_slot_ = static_cast<std::uint32_t>(first_face_slot_ + 3 * face_count);
+  slot_count = first_center_slot_ + 4 * cells.size();
+  own_tetrahedron_.resize(cells.size());
+  std::iota(own_tetrahedron_.begin(), own_tetrahedron_.end(), 0u);
+  for (std::uint32_t t = 0; t < cells.size(); ++t) {
+    Cell& cell = cells[t];
+    for (std::size_t s = 0; s < 6; ++s) cell.first_slots[kMiddles + s] = first_middle_slot_ + 2 * cell.springs[s];
+    for (std::size_t f = 0; f < 4; ++f) {
+      std::uint32_t& slot = cell.first_slots[kFaceCenters + f];
+      slot = first_face_slot_ + 3 * slot;
+    }
+    cell.first_slots[kCenter] = first_center_slot_ + 4 * t;
+    for (std::size_t c = 0; c < 4; ++c) cell.first_slots[kCorners + c] = cell.nodes[c];
+  }
+}
+
+std::span<const std::uint32_t> SurfaceTopology::users(std::uint32_t slot) const noexcept {
+  if (slot < first_middle_slot_) return node_tetrahedra[slot];
+  if (slot < first_face_slot_) return spring_tetrahedra[(slot - first_middle_slot_) / 2];
+  if (slot < first_center_slot_) {
+    const auto& sides = face_tetrahedra_[(slot - first_face_slot_) / 3];
+    return std::span(sides).first(sides[0] == sides[1] ? 1 : 2);
+  }
+  return std::span(own_tetrahedron_).subspan((slot - first_center_slot_) / 4, 1);
+}
+
 // Joins the sides that share a spring, but for creases: their corners, and the two copies of their middle, end by end.
-void SurfaceTopology::share_normals(const TetMesh& mesh) {
+void SurfaceTopology::share_normals(const TetMesh& mesh, double crease) {
   const auto key = [](std::uint32_t outer_face, std::size_t site) {
     return static_cast<std::uint32_t>(outer_face * kSiteCount + site);
   };
+  const double least_cosine = cos_exact(crease);
   DisjointSets shared(outer_faces.size() * kSiteCount);
   const std::vector<FaceSide> sides = sorted_sides(*this);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
@@ -162,7 +242,7 @@ void SurfaceTopology::share_normals(const TetMesh& mesh) {
     const OuterFace &f = outer_faces[left.outer_face], &g = outer_faces[right.outer_face];
     const double cosine =
         dot(outward_normal(mesh, cells[f.tetrahedron], f.face), outward_normal(mesh, cells[g.tetrahedron], g.face));
-    if (cosine < kCosCrease) continue;
+    if (cosine < least_cosine) continue;
     shared.join(key(left.outer_face, kMiddles + left.site), key(right.outer_face, kMiddles + right.site));
     for (std::size_t end = 0; end < 2; ++end) {
       shared.join(key(left.outer_face, kCorners + kTetEdges[left.site][end]),
@@ -176,7 +256,7 @@ void SurfaceTopology::share_normals(const TetMesh& mesh) {
       const std::uint32_t root = shared.root(key(f, site));
       if (root == key(f, site)) {
         first_slot_of[root] = static_cast<std::uint32_t>(normal_slot_count);
-        normal_slot_count += copy_count(site);
+        normal_slot_count += copy_count(site, outer_faces[f].face);
       }
       outer_faces[f].first_normal_slots[site] = first_slot_of[root];
     }

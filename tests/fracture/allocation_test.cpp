@@ -1,6 +1,7 @@
 // What runs in a step or in every frame takes no memory from the heap.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <utility>
 
 #include "crumble/fracture/cut.hpp"
@@ -23,19 +24,24 @@ TEST(Allocation, NoneAfterConstruction) {
   std::vector<double> masses(mesh.node_count(), 1e-5);
   std::vector<Fragment> fragments(mesh.node_count());
   FragmentLabeler labeler(mesh.node_count(), mesh.springs);
-  SurfaceExtractor surface(mesh);
+  std::array<SurfaceExtractor, 3> surfaces{SurfaceExtractor(mesh), SurfaceExtractor(mesh, {SurfaceMode::fragments}),
+                                           SurfaceExtractor(mesh, {SurfaceMode::paper})};
+  const Flags whole(spring_count, 1);
   Flags first(spring_count, 1);
-  const Flags none(spring_count, 0), some = random_flags(spring_count, 0.5, random);
+  Flags some = random_flags(spring_count, 0.5, random);
+  for (const std::uint32_t s : overlong) some[s] = 0;
+  const Flags none(spring_count, 0);
 
   std::size_t allocations = 0, cuts = 0;
   {
     AllocationCounter counter;
     cuts = cut_springs(overlong, first, newly_cut);
-    for (const Flags* intact : {&std::as_const(first), &some, &none}) {
+    double time = 0;
+    for (const Flags* intact : {&whole, &std::as_const(first), &std::as_const(some), &none, &whole}) {
       const std::size_t count = labeler.label(*intact);
       measure_fragments(mesh, labeler.labels(), masses, positions, std::span(fragments).first(count));
-      surface.extract(*intact, labeler.labels());
-      surface.update(positions);
+      time += 0.01;
+      for (SurfaceExtractor& surface : surfaces) surface.update({positions, *intact, labeler.labels(), time});
     }
     allocations = counter.count();
   }

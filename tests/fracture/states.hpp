@@ -94,6 +94,29 @@ inline std::size_t label_count(const std::vector<std::uint32_t>& labels) {
   return *std::max_element(labels.begin(), labels.end()) + 1u;
 }
 
+/// A body at one moment.
+struct Body {
+  explicit Body(const TetMesh& of) : mesh(&of), positions(of.positions), intact(of.springs.size(), 1) { relabel(); }
+  Body(const TetMesh& of, Flags flags) : Body(of) {
+    intact = std::move(flags);
+    relabel();
+  }
+  void relabel() { labels = flood_labels(*mesh, intact); }
+  /// Ids by a fragment's least node, so that a split leaves the others' alone.
+  void label_by_least_node() {
+    relabel();
+    std::map<std::uint32_t, std::uint32_t> least;
+    for (std::uint32_t i = 0; i < labels.size(); ++i) labels[i] = least.try_emplace(labels[i], i).first->second;
+  }
+  SurfaceInput now() const { return {positions, intact, labels, time}; }
+
+  const TetMesh* mesh;
+  VecArray positions;
+  Flags intact;
+  std::vector<std::uint32_t> labels;
+  double time = 0;
+};
+
 /// The surface with its vertices at rest, or where they are now.
 inline TriangleMesh rest_surface(const SurfaceExtractor& surface) {
   return {{surface.rest_positions().begin(), surface.rest_positions().end()},
