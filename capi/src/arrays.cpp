@@ -52,26 +52,36 @@ crumble_view view_of_mesh(const TetMesh& mesh, std::uint32_t which) {
   }
 }
 
-crumble_view view_of_surface(const SurfaceExtractor* surface, std::uint32_t which) {
-  if (which < CRUMBLE_ARRAY_SURFACE_POSITIONS || which > CRUMBLE_ARRAY_SURFACE_TETRAHEDRA) no_such_array(which);
-  if (!surface) throw Error(Code::state, "there is no surface yet: call crumble_sim_extract_surface first");
+}  // namespace
+
+crumble_view view_of_surface(const SurfaceExtractor& surface, std::uint32_t which) {
   switch (which) {
     case CRUMBLE_ARRAY_SURFACE_POSITIONS:
-      return view_of(surface->positions());
+      return view_of(surface.positions());
     case CRUMBLE_ARRAY_SURFACE_REST_POSITIONS:
-      return view_of(surface->rest_positions());
+      return view_of(surface.rest_positions());
     case CRUMBLE_ARRAY_SURFACE_TRIANGLES:
-      return view_of(surface->triangles());
+      return view_of(surface.triangles());
     case CRUMBLE_ARRAY_SURFACE_NORMALS: {
-      const auto normals = surface->corner_normals();
+      const auto normals = surface.corner_normals();
       static_assert(sizeof normals[0] == 9 * sizeof(float));
       return view_of(normals.data(), normals.size(), 9, CRUMBLE_SCALAR_FLOAT32);
     }
     case CRUMBLE_ARRAY_SURFACE_FRAGMENTS:
-      return view_of(surface->fragments());
+      return view_of(surface.fragments());
+    case CRUMBLE_ARRAY_SURFACE_TETRAHEDRA:
+      return view_of(surface.tetrahedra());
     default:
-      return view_of(surface->tetrahedra());
+      no_such_array(which);
   }
+}
+
+namespace {
+
+crumble_view view_of_own_surface(const SurfaceExtractor* surface, std::uint32_t which) {
+  if (which < CRUMBLE_ARRAY_SURFACE_POSITIONS || which > CRUMBLE_ARRAY_SURFACE_TETRAHEDRA) no_such_array(which);
+  if (!surface) throw Error(Code::state, "there is no surface yet: call crumble_sim_extract_surface first");
+  return view_of_surface(*surface, which);
 }
 
 crumble_view view_of_sim(Sim& sim, std::uint32_t which) {
@@ -97,9 +107,9 @@ crumble_view view_of_sim(Sim& sim, std::uint32_t which) {
     case CRUMBLE_ARRAY_NEW_CUTS:
       return view_of(simulation.new_cuts());
     case CRUMBLE_ARRAY_NODE_FRAGMENTS:
-      return view_of(sim.fragments().labels());
+      return view_of(simulation.node_fragments());
     default:
-      return view_of_surface(sim.surface.get(), which);
+      return view_of_own_surface(sim.surface.get(), which);
   }
 }
 
@@ -138,14 +148,6 @@ crumble_result crumble_sim_copy(crumble_sim sim, uint32_t which, void* dst, uint
   });
 }
 
-crumble_result crumble_sim_count_fragments(crumble_sim sim, uint32_t* count) {
-  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
-    require_pointer("count", count);
-    *count = static_cast<uint32_t>(s.fragments().count());
-    return CRUMBLE_OK;
-  });
-}
-
 crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info* info) {
   return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
     if (info) check_struct_size("info", info->struct_size);
@@ -157,7 +159,7 @@ crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info
     out.vertex_count = static_cast<uint32_t>(s.surface->positions().size());
     out.triangle_count = static_cast<uint32_t>(s.surface->triangles().size());
     out.skin_triangle_count = static_cast<uint32_t>(s.surface->skin_triangle_count());
-    out.fragment_count = static_cast<uint32_t>(s.fragments().count());
+    out.fragment_count = static_cast<uint32_t>(now.fragments().count());
     write_struct("info", info, out);
     return CRUMBLE_OK;
   });

@@ -6,6 +6,7 @@
 
 #include "call.hpp"
 #include "crumble/base/vec_array.hpp"
+#include "crumble/fracture/surface.hpp"
 
 namespace crumble::capi {
 
@@ -55,6 +56,9 @@ crumble_result deliver(const Call& call, std::uint64_t bytes, void* dst, std::ui
   write(dst);
   return CRUMBLE_OK;
 }
+
+/// An array of the group CRUMBLE_ARRAY_SURFACE_. Throws Error(out_of_range).
+crumble_view view_of_surface(const SurfaceExtractor& surface, std::uint32_t which);
 
 crumble_result copy(const Call& call, const crumble_view& view, void* dst, std::uint64_t dst_bytes,
                     std::uint64_t* needed);

@@ -6,13 +6,14 @@ namespace crumble::capi {
 constinit HandleTable Mesh::table{1};
 constinit HandleTable Sim::table{2};
 
-Sim::Sim(std::shared_ptr<const TetMesh> body, SimulationDef def)
-    : mesh(std::move(body)), simulation(std::move(def)), labeler(mesh->node_count(), mesh->springs) {}
+Sim::Sim(std::shared_ptr<const TetMesh> body, SimulationDef def) : mesh(std::move(body)), simulation(std::move(def)) {}
 
-const FragmentLabeler& Sim::fragments() noexcept {
-  if (labels_stale) labeler.label(simulation.intact());
-  labels_stale = false;
-  return labeler;
+void Sim::publish_now() noexcept {
+  for (const auto& link : readers) link->publisher.publish_now(simulation);
+}
+
+void Sim::drop_closed_readers() noexcept {
+  std::erase_if(readers, [](const auto& link) { return !link->is_open; });
 }
 
 crumble_result fail_handle(const Call& call, const char* name, const void* handle, crumble_result result) noexcept {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "call.hpp"
-#include "crumble/fracture/fragments.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/sim/recording.hpp"
 #include "crumble/sim/simulation.hpp"
 #include "handles.hpp"
+#include "reader.hpp"
 
 namespace crumble::capi {
 
@@ -29,19 +29,18 @@ struct Sim {
 
   Sim(std::shared_ptr<const TetMesh> body, SimulationDef def);
 
-  /// Fragment of each node now.
-  const FragmentLabeler& fragments() noexcept;
+  /// Brings all readers up to the present state at once.
+  void publish_now() noexcept;
+  void drop_closed_readers() noexcept;
 
-  // At rest. Labeler and surface borrow it: the simulation's own copy moves whenever it is restored or rebuilt.
+  // At rest. The surface borrows it: the simulation's own copy moves whenever it is restored or rebuilt.
   std::shared_ptr<const TetMesh> mesh;
   Simulation simulation;
   bool has_floor = false;   // the first wall
   std::vector<Pose> poses;  // per tool; room for the step
   std::optional<Recording> recording;
-  FragmentLabeler labeler;
-  bool labels_stale = true;
   std::unique_ptr<SurfaceExtractor> surface;  // from the first extraction on
-  bool surface_stale = true;
+  std::vector<std::shared_ptr<ReaderLink>> readers;
 };
 
 /// Gives an object to the caller: the handle in `out`.

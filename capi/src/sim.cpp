@@ -24,13 +24,17 @@ void set_up(Sim& sim, Change&& change) {
   if (const auto steps = sim.simulation.info().step; steps != 0) {
     throw Error(Code::state, "the simulation has done " + std::to_string(steps) + " steps: reset it first");
   }
+  sim.drop_closed_readers();
+  if (!sim.readers.empty()) {
+    throw Error(Code::in_use,
+                "the simulation has " + std::to_string(sim.readers.size()) + " readers: destroy them first");
+  }
   SimulationDef def = sim.simulation.definition();
   change(def);
   sim.poses.reserve(def.tools.size());
   Simulation next(std::move(def));
   sim.simulation = std::move(next);
   sim.poses.resize(sim.simulation.definition().tools.size());
-  sim.labels_stale = sim.surface_stale = true;
 }
 
 }  // namespace
@@ -129,7 +133,7 @@ crumble_result crumble_sim_reset(crumble_sim sim) {
   return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
     require_no_recording(s);
     s.simulation.reset();
-    s.labels_stale = s.surface_stale = true;
+    s.publish_now();
     return CRUMBLE_OK;
   });
 }

@@ -37,7 +37,7 @@ crumble_result crumble_sim_restore(crumble_sim sim, const void* snapshot, uint64
     require_pointer("snapshot", snapshot);
     if (s.recording) return call.fail(CRUMBLE_E_STATE, {"a recording is running: end it first"});
     s.simulation.restore({static_cast<const std::uint8_t*>(snapshot), bytes});
-    s.labels_stale = s.surface_stale = true;
+    s.publish_now();
     return crumble_result{CRUMBLE_OK};
   });
 }

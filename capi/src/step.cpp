@@ -57,8 +57,8 @@ crumble_result advance(Sim& sim, const Call& call, const crumble_pose* poses, st
   }
   std::transform(poses, poses + count, sim.poses.begin(), to_pose);
   const StepInfo& info = sim.simulation.step(sim.poses);
+  for (const auto& link : sim.readers) link->publisher.publish(sim.simulation);
   if (info.status == Code::bad_pose) return fail_bad_pose(call, poses, count);
-  if (info.new_cuts > 0) sim.labels_stale = sim.surface_stale = true;
   if (info.status == Code::diverged) {
     return call.fail(CRUMBLE_E_DIVERGED,
                      {"node ", info.bad_node, " left the world in step ", info.step + 1, ": reset the simulation"});
@@ -97,8 +97,18 @@ static_assert(std::uint32_t{CRUMBLE_STEP_CONTACT_SUSPENDED} == kContactSuspended
 static_assert(std::uint32_t{CRUMBLE_STEP_GUARDED} == kGuarded);
 
 crumble_counters to_c(const Counters& counters) {
-  return {
-      0, 0, counters.guarded_nodes, counters.cuts, counters.tool_jumps, counters.suspended_steps, counters.bad_poses};
+  crumble_counters out{};
+  out.guarded_nodes = counters.guarded_nodes;
+  out.cuts = counters.cuts;
+  out.tool_jumps = counters.tool_jumps;
+  out.suspended_steps = counters.suspended_steps;
+  out.bad_poses = counters.bad_poses;
+  out.dropped_events = counters.dropped_events;
+  out.asleep = counters.asleep;
+  out.woken = counters.woken;
+  out.removed = counters.removed;
+  out.removed_nodes = counters.removed_nodes;
+  return out;
 }
 
 crumble_profile to_c(const StepProfile& profile) {

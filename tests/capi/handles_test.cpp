@@ -78,6 +78,7 @@ class Handles : public CapiTest {
     info.struct_size = sizeof info, counters.struct_size = sizeof counters, profile.struct_size = sizeof profile,
     surface.struct_size = sizeof surface;
     crumble_view view{};
+    crumble_reader reader = nullptr;
     std::uint64_t bytes = 0;
     std::uint32_t count = 0;
     const crumble_result results[] = {crumble_sim_get_def(handle, &some_def),
@@ -97,6 +98,11 @@ class Handles : public CapiTest {
                                       crumble_sim_copy(handle, CRUMBLE_ARRAY_INTACT, nullptr, 0, &bytes),
                                       crumble_sim_count_fragments(handle, &count),
                                       crumble_sim_extract_surface(handle, &surface),
+                                      crumble_sim_set_fragment_state(handle, 0, CRUMBLE_FRAGMENT_ACTIVE),
+                                      crumble_sim_get_fragment_state(handle, 0, &count),
+                                      crumble_sim_find_debris(handle, 1, 0, &view),
+                                      crumble_sim_publish(handle),
+                                      crumble_reader_create(handle, nullptr, &reader),
                                       crumble_sim_snapshot(handle, nullptr, 0, &bytes),
                                       crumble_sim_restore(handle, &node, sizeof node),
                                       crumble_sim_state_hash(handle, &bytes),

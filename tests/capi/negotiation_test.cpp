@@ -112,6 +112,16 @@ TEST_F(Negotiation, AForgottenSizeIsToldApart) {
   crumble_sim_info sim_info{};
   crumble_mesh_info mesh_info{};
   crumble_surface_info surface_info{};
+  crumble_reader_def reader_def{};
+  crumble_reader reader = nullptr;
+  crumble_reader_info reader_info{};
+  crumble_fragment_info fragment_info{};
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_reader_def_init(&reader_def, 0));
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_reader_create(sim, &reader_def, &reader));
+  ASSERT_OK(crumble_reader_create(sim, nullptr, &reader));
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_reader_update(reader, &reader_info));
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_reader_get_fragment(reader, 0, &fragment_info));
+  ASSERT_OK(crumble_reader_destroy(reader));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_mesh_create(&mesh_def, &made_mesh));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_create(mesh, &sim_def, &made));
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_sim_configure(sim, &sim_def));

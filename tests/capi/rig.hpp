@@ -51,6 +51,7 @@ struct Cube {
 /// A cube that stands fixed under a stick; its springs break early.
 class CapiTest : public testing::Test {
  protected:
+  explicit CapiTest(const Cube& body = Cube()) : cube(body) {}
   void SetUp() override {
     ASSERT_OK(cube.create(&mesh));
     ASSERT_OK(crumble_sim_def_init(&def, sizeof def));

@@ -141,15 +141,26 @@ enum {
   CRUMBLE_ARRAY_VELOCITIES_Z = 23,
   CRUMBLE_ARRAY_INTACT = 24,         /* (springs) uint8: 1 intact, 0 cut */
   CRUMBLE_ARRAY_NEW_CUTS = 25,       /* uint32 springs that the last step cut, ascending */
-  CRUMBLE_ARRAY_NODE_FRAGMENTS = 26, /* (nodes) uint32: fragment of each node, 0 to crumble_sim_count_fragments - 1 */
-  /* Of a simulation, as the last crumble_sim_extract_surface left it; CRUMBLE_E_STATE before the first one. */
+  CRUMBLE_ARRAY_NODE_FRAGMENTS = 26, /* (nodes) uint32 fragment of each node; CRUMBLE_NONE: removed */
+  /* Of a simulation, as the last crumble_sim_extract_surface left it, CRUMBLE_E_STATE before the first one; and of a
+   * reader, as the last crumble_reader_update left it. */
   CRUMBLE_ARRAY_SURFACE_POSITIONS = 32,      /* (vertices, 3) float64, m */
   CRUMBLE_ARRAY_SURFACE_REST_POSITIONS = 33, /* (vertices, 3) float64, m: the same points in the body at rest */
   CRUMBLE_ARRAY_SURFACE_TRIANGLES = 34,      /* (triangles, 3) uint32 vertices, counter-clockwise; skin first */
   CRUMBLE_ARRAY_SURFACE_NORMALS = 35,        /* (triangles, 9) float32: a unit normal for each of the 3 corners */
   CRUMBLE_ARRAY_SURFACE_FRAGMENTS = 36,      /* (triangles) uint32 fragment */
-  CRUMBLE_ARRAY_SURFACE_TETRAHEDRA = 37      /* (triangles) uint32 tetrahedron that the triangle was cut from */
+  CRUMBLE_ARRAY_SURFACE_TETRAHEDRA = 37,     /* (triangles) uint32 tetrahedron that the triangle was cut from */
+  /* Of a reader only; it also has POSITIONS (copy only), POSITIONS_X, _Y, _Z, INTACT and NODE_FRAGMENTS. */
+  CRUMBLE_ARRAY_SURFACE_SKIN_SOURCES = 38,      /* (skin triangles) uint32 triangle of CRUMBLE_ARRAY_BOUNDARY that it is
+                                                   a part of */
+  CRUMBLE_ARRAY_SURFACE_CHANGED_TRIANGLES = 39, /* uint32 triangles whose vertices, place (skin or interior) or fragment
+                                                   the last update changed */
+  CRUMBLE_ARRAY_SURFACE_CHANGED_VERTICES = 40   /* uint32 vertices whose rest position it changed; positions and
+                                                   normals change with every update */
 };
+
+/* In place of an index: there is none. */
+#define CRUMBLE_NONE 0xffffffffu
 
 /* ---- Meshes ----------------------------------------------------------------------------------------------------- */
 
@@ -337,6 +348,11 @@ typedef struct crumble_counters {
   uint64_t tool_jumps;      /* steps with CRUMBLE_STEP_TOOL_JUMPED, per tool */
   uint64_t suspended_steps; /* steps with CRUMBLE_STEP_CONTACT_SUSPENDED */
   uint64_t bad_poses;       /* steps refused with CRUMBLE_E_BAD_POSE */
+  uint64_t dropped_events;  /* of steps with more than 65536 events */
+  uint64_t asleep;          /* fragments, now */
+  uint64_t woken;           /* fragments, by tools */
+  uint64_t removed;         /* fragments */
+  uint64_t removed_nodes;
 } crumble_counters;
 
 /* Wall time of each stage of the last step, s. */
@@ -364,6 +380,13 @@ typedef struct crumble_sim_info {
   uint32_t partitions; /* pieces that threads can share: so many work at once, at most */
   uint32_t sorted;     /* 1: the solver numbers the nodes its own way, since their order was not a good one */
 } crumble_sim_info;
+
+/* What a host may make of a fragment. */
+enum {
+  CRUMBLE_FRAGMENT_ACTIVE = 0,
+  CRUMBLE_FRAGMENT_ASLEEP = 1, /* stands still, weightless, until a tool touches it; walls do not push it */
+  CRUMBLE_FRAGMENT_REMOVED = 2 /* nothing moves or touches it, no surface shows it; for good */
+};
 
 typedef struct crumble_surface_info {
   uint32_t struct_size;
@@ -449,12 +472,30 @@ CRUMBLE_API crumble_result crumble_sim_get_view(crumble_sim sim, uint32_t which,
  * is not). [one] */
 CRUMBLE_API crumble_result crumble_sim_copy(crumble_sim sim, uint32_t which, void *dst, uint64_t dst_bytes,
                                             uint64_t *needed);
-/* Fragments: parts of the body that intact springs hold together; 1 for an unbroken body. [one] */
+/* Fragments: parts of the body that intact springs hold together; 1 for an unbroken body. Their ids run from 0 to
+ * `count` - 1 and stay: when a fragment falls apart, the part with most nodes keeps the id and the others get new ones.
+ * Removed fragments count too. In bodies of more than 4096 nodes a new id may come some steps after the cut. [one] */
 CRUMBLE_API crumble_result crumble_sim_count_fragments(crumble_sim sim, uint32_t *count);
-/* Brings the surface arrays up to where the body is now; for drawing, outside the servo tick. Closed, oriented and
- * 2-manifold in every state of cutting. `info` may be NULL. The first call takes memory, the others do not.
- * CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size), _NO_MEMORY. [one] */
+/* Puts a fragment to sleep, wakes it or removes it, CRUMBLE_FRAGMENT_; goes into a running recording. Between steps;
+ * takes time in proportion to the body's nodes and no memory (except while recording).
+ * CRUMBLE_E_OUT_OF_RANGE (no such fragment or state), _STATE (removed before), _NO_MEMORY (while recording: it is done,
+ * the recording is dropped). [one] */
+CRUMBLE_API crumble_result crumble_sim_set_fragment_state(crumble_sim sim, uint32_t fragment, uint32_t state);
+CRUMBLE_API crumble_result crumble_sim_get_fragment_state(crumble_sim sim, uint32_t fragment, uint32_t *state);
+/* Debris: the fragments, not removed, with at most `max_nodes` nodes that are all slower than `max_speed` (m/s) and not
+ * held by a tool, as a view of uint32 ids, ascending; valid until the next call of this function, restore or set-up, so
+ * their states may be set while it is read. No memory.
+ * CRUMBLE_E_INVALID_VALUE (max_speed is NaN). [one] */
+CRUMBLE_API crumble_result crumble_sim_find_debris(crumble_sim sim, uint32_t max_nodes, double max_speed,
+                                                   crumble_view *fragments);
+/* Brings the simulation's own surface arrays up to where the body is now: for programs with one thread; others use a
+ * reader. Outside the servo tick. Closed, oriented and 2-manifold in every state of cutting. `info` may be NULL. The
+ * first call takes memory, the others do not. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size), _NO_MEMORY. [one] */
 CRUMBLE_API crumble_result crumble_sim_extract_surface(crumble_sim sim, crumble_surface_info *info);
+
+/* Makes the present state available to every reader at once, asked or not: for programs with one thread, which call it
+ * before crumble_reader_update. Takes time in proportion to the body, no memory. [one] */
+CRUMBLE_API crumble_result crumble_sim_publish(crumble_sim sim);
 
 /* All that the future depends on, as bytes: a simulation of the same definition (kernel and threads may be others) that
  * restores them goes on with the same bits. The size changes from step to step. `dst`, `dst_bytes`, `needed` as in
@@ -473,9 +514,129 @@ CRUMBLE_API crumble_result crumble_sim_begin_recording(crumble_sim sim);
 CRUMBLE_API crumble_result crumble_sim_save_recording(crumble_sim sim, const char *path);
 /* Ends and forgets the recording. CRUMBLE_E_STATE (not recording). [one] */
 CRUMBLE_API crumble_result crumble_sim_end_recording(crumble_sim sim);
-/* Runs a recording again. `step_count` receives its steps and `equal_steps` how many of them, from the first on, reached
- * the recorded state: the same number when all is well. CRUMBLE_E_IO, _FORMAT, _VERSION, _CORRUPT, _NO_MEMORY. [any] */
+/* Runs a recording again. `step_count` receives its steps and `equal_steps` how many of them, from the first on,
+ * reached the recorded state: the same number when all is well. CRUMBLE_E_IO, _FORMAT, _VERSION, _CORRUPT, _NO_MEMORY.
+ * [any] */
 CRUMBLE_API crumble_result crumble_verify_recording(const char *path, uint64_t *step_count, uint64_t *equal_steps);
+
+/* ---- Readers ---------------------------------------------------------------------------------------------------- */
+
+/* Looks at a simulation from another thread, which draws, listens or logs at its own pace, say 60 times a second, while
+ * the simulation is stepped at 1 kHz or more. Neither thread ever waits for the other: stepping hands over a copy of
+ * its state when the reader has asked for one, at most 60 times in a second of simulated time. A body of more than 1024
+ * nodes is copied in slices over up to 16 steps (more from 131 072 nodes on); such a state is a few steps older at one
+ * end than at the other.
+ * A reader outlives its simulation, with the last state; while a simulation has readers it cannot be set up again. */
+typedef struct crumble_reader_t *crumble_reader;
+
+/* What a cut spring opens in the surface. */
+enum {
+  CRUMBLE_SURFACE_CRACKS = 0,    /* notches and cracks, at once; closed and 2-manifold */
+  CRUMBLE_SURFACE_FRAGMENTS = 1, /* nothing before a fragment is free; closed and 2-manifold */
+  CRUMBLE_SURFACE_PAPER = 2      /* the paper's drawing, Fig 6; closed, but parts of it touch in edges and corners */
+};
+
+typedef struct crumble_reader_def {
+  uint32_t struct_size;
+  uint32_t surface_mode; /* CRUMBLE_SURFACE_; default cracks */
+  double settle;         /* s that what a cut has freed takes to its new place; >= 0; default 0.05 */
+  double crease;         /* skin edges sharper than this at rest are shaded sharp, rad; [0, pi]; default 40 degrees */
+} crumble_reader_def;
+
+typedef struct crumble_reader_info {
+  uint32_t struct_size;
+  uint32_t fragment_count; /* ids given so far; removed fragments count too */
+  uint64_t step;           /* steps done when the copy of the state was complete */
+  double time;             /* simulated seconds then */
+  uint64_t first_step;     /* steps done when it was begun: the same but for large bodies */
+  uint64_t cuts;           /* springs cut */
+  uint64_t dropped_events; /* that this reader did not read in time */
+  uint32_t vertex_count;   /* of the surface */
+  uint32_t triangle_count;
+  uint32_t skin_triangle_count; /* the first triangles; the others were laid open by cracks */
+  uint32_t surface_rebuilt;     /* 1: everything in it may have changed */
+} crumble_reader_info;
+
+typedef struct crumble_fragment_info {
+  uint32_t struct_size;
+  uint32_t node_count;        /* 0: removed */
+  uint32_t tetrahedron_count; /* that lie in it with all four corners */
+  uint32_t least_node;        /* CRUMBLE_NONE when removed */
+  uint32_t parent;            /* fragment that it came off; CRUMBLE_NONE: there from the start */
+  uint32_t state;             /* CRUMBLE_FRAGMENT_ */
+  uint64_t born;              /* step in which it was found */
+  double mass;                /* kg */
+  double rest_volume;         /* m^3; over all fragments the body's */
+  double center[3];           /* of mass, m */
+  double low[3], high[3];     /* corners of the box round its nodes, m */
+  double inertia[6];          /* of its nodes as points about the center, scene axes: xx yy zz xy xz yz, kg m^2 */
+} crumble_fragment_info;
+
+/* Lists of one fragment, uint32, ascending. */
+enum {
+  CRUMBLE_LIST_NODES = 0,
+  CRUMBLE_LIST_TETRAHEDRA = 1, /* with all four corners in it */
+  CRUMBLE_LIST_TRIANGLES = 2 /* of the surface; they alone are closed too, but in mode `fragments` on large bodies while
+                                ids lag, and where parts touch in mode `paper` */
+};
+
+enum {
+  CRUMBLE_EVENT_CUT = 1,
+  CRUMBLE_EVENT_SPLIT = 2,         /* a fragment came off another */
+  CRUMBLE_EVENT_CONTACT_BEGIN = 3, /* a tool or wall took hold of a node */
+  CRUMBLE_EVENT_CONTACT_END = 4    /* and let it go */
+};
+
+/* What does not apply is CRUMBLE_NONE. This struct never changes its size. */
+typedef struct crumble_event {
+  uint32_t kind;     /* CRUMBLE_EVENT_ */
+  uint32_t spring;   /* cut */
+  uint32_t node;     /* contact; split: a node of the new fragment */
+  uint32_t holder;   /* contact: the tool; CRUMBLE_NONE: a wall */
+  uint32_t fragment; /* of the spring's first node or of the node; split: the new one */
+  uint32_t parent;   /* split: what it came off */
+  uint64_t step;     /* in which it happened, from 0 */
+  double time;       /* simulated seconds at that step's end */
+  double place[3];   /* m: the spring's middle, the node of a split, the point of a contact that begins, the node of one
+                        that ends */
+  double energy;     /* J. Cut: k/2 (l - l0)^2 of the spring; contact begin: m/2 v^2 of the node's approach along the
+                        normal; else 0 */
+} crumble_event;
+
+/* Defaults. CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+CRUMBLE_API crumble_result crumble_reader_def_init(crumble_reader_def *def, uint32_t struct_size);
+/* `def` may be NULL: defaults. Holds the state that the simulation is in.
+ * CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (a field), _UNINITIALIZED, _VERSION, _NO_MEMORY. [one] in the simulation */
+CRUMBLE_API crumble_result crumble_reader_create(crumble_sim sim, const crumble_reader_def *def,
+                                                 crumble_reader *reader);
+/* NULL is allowed and does nothing. [one] */
+CRUMBLE_API crumble_result crumble_reader_destroy(crumble_reader reader);
+/* Takes the newest state, brings the arrays and the surface up to it, and asks for the next. Never waits for the
+ * stepping thread; no memory. `info` may be NULL. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_reader_update(crumble_reader reader, crumble_reader_info *info);
+/* Array `which`, without a copy, valid until the next crumble_reader_update or destroy. CRUMBLE_E_OUT_OF_RANGE (no such
+ * array of a reader), _UNSUPPORTED (exists as a copy only). [one] */
+CRUMBLE_API crumble_result crumble_reader_get_view(crumble_reader reader, uint32_t which, crumble_view *view);
+/* The same array, rows packed; `dst`, `dst_bytes`, `needed` as in crumble_sim_copy.
+ * CRUMBLE_E_OUT_OF_RANGE, _BUFFER_TOO_SMALL. [one] */
+CRUMBLE_API crumble_result crumble_reader_copy(crumble_reader reader, uint32_t which, void *dst, uint64_t dst_bytes,
+                                               uint64_t *needed);
+/* One fragment as of the last update. The first call after an update measures all of them.
+ * CRUMBLE_E_OUT_OF_RANGE (no such fragment), _UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_reader_get_fragment(crumble_reader reader, uint32_t fragment,
+                                                       crumble_fragment_info *info);
+/* Its CRUMBLE_LIST_, without a copy, valid until the next update or destroy. CRUMBLE_E_OUT_OF_RANGE. [one] */
+CRUMBLE_API crumble_result crumble_reader_get_fragment_list(crumble_reader reader, uint32_t fragment, uint32_t which,
+                                                            crumble_view *list);
+/* Spreads texture coordinates over the skin: `boundary`: (boundary triangles, 6) float32, u and v at each corner of the
+ * triangles of CRUMBLE_ARRAY_BOUNDARY; `skin`: (skin triangles, 6), written, interpolated as in the body at rest.
+ * `skin_count`: triangles that it has room for. CRUMBLE_E_BUFFER_TOO_SMALL. [one] */
+CRUMBLE_API crumble_result crumble_reader_spread_over_skin(crumble_reader reader, const float *boundary, float *skin,
+                                                           uint32_t skin_count);
+/* Takes the oldest events that this reader has not read: up to `capacity`, into `events`; `count` receives how many.
+ * 16384 can wait; what comes on top is dropped and counted. No update needed. [one] */
+CRUMBLE_API crumble_result crumble_reader_read_events(crumble_reader reader, crumble_event *events, uint32_t capacity,
+                                                      uint32_t *count);
 
 #ifdef __cplusplus
 }
