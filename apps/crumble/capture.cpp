@@ -1,63 +1,26 @@
 #include "capture.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "crumble/fracture/surface.hpp"
 
 namespace crumble::app {
 namespace {
 
-// The extractor follows turning pieces from one update to the next, so it is refreshed as often as a viewer would.
-constexpr double kRefresh = 1.0 / 60;
-
-class SurfaceCamera {
- public:
-  explicit SurfaceCamera(const TetMesh& mesh) : extractor_(mesh) {}
-
-  void refresh(const Simulation& sim) {
-    extractor_.update({sim.positions(), sim.intact(), sim.node_fragments(), sim.info().time});
-  }
-
-  Capture take(const Simulation& sim, std::size_t step, const Pose& tool) {
-    refresh(sim);
-    return {step, sim.info().time, tool, drawn()};
-  }
-
- private:
-  render::RenderMesh drawn() const {
-    render::RenderMesh mesh;
-    mesh.positions.assign(extractor_.positions().begin(), extractor_.positions().end());
-    mesh.rest_positions.assign(extractor_.rest_positions().begin(), extractor_.rest_positions().end());
-    mesh.triangles.assign(extractor_.triangles().begin(), extractor_.triangles().end());
-    mesh.corner_normals.assign(extractor_.corner_normals().begin(), extractor_.corner_normals().end());
-    mesh.materials.assign(mesh.triangles.size(), render::Material::interior);
-    std::fill_n(mesh.materials.begin(), extractor_.skin_triangle_count(), render::Material::skin);
-    return mesh;
-  }
-
-  SurfaceExtractor extractor_;
-};
+constexpr double kRefresh = 1.0 / 60;  // seconds between two looks of the camera
 
 }  // namespace
 
-Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps) {
-  Rerun result;
-  how.energy_audit = true;
-  Simulation sim = recording.start(how);
-  SurfaceCamera camera(sim.mesh());
+void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, const std::vector<std::size_t>& steps,
+           const std::function<void(std::size_t)>& take) {
   std::size_t step = 0;
   double refreshed = 0;
+  auto next = steps.begin();
   const auto differs = replay(recording, sim, [&](const Simulation& now) {
-    if (!steps.empty() && now.info().time >= refreshed + kRefresh) {
+    const bool is_wanted = next != steps.end() && *next == step;
+    if (is_wanted || (next != steps.end() && now.info().time >= refreshed + kRefresh)) {
       refreshed = now.info().time;
-      camera.refresh(now);
+      camera.refresh();
     }
-    const auto wanted = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), step));
-    if (wanted > 0) {
-      const Pose tool = recording.tool_count() > 0 ? recording.poses(step)[0] : Pose{};
-      result.captures.insert(result.captures.end(), wanted, camera.take(now, step, tool));
-    }
+    for (; next != steps.end() && *next == step; ++next) take(step);
     ++step;
     return true;
   });
@@ -65,6 +28,17 @@ Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std:
     throw Error(Code::diverged,
                 "run again, the state differs from the recorded one at step " + std::to_string(*differs));
   }
+}
+
+Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps) {
+  Rerun result;
+  how.energy_audit = true;
+  Simulation sim = recording.start(how);
+  SurfaceCamera camera(sim, SurfaceMode::cracks);
+  rerun(recording, sim, camera, steps, [&](std::size_t step) {
+    const Pose tool = recording.tool_count() > 0 ? recording.poses(step)[0] : Pose{};
+    result.captures.push_back({step, tool, camera.surface()});
+  });
   result.ledger = sim.ledger();
   return result;
 }

@@ -2,18 +2,19 @@
 // energy ledger, and takes the surface at chosen steps.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "experiment.hpp"
 #include "render/scene.hpp"
+#include "surface_camera.hpp"
 
 namespace crumble::app {
 
 struct Capture {
   std::size_t step = 0;
-  double time = 0;
   Pose tool;
-  render::RenderMesh body;  // the closed surface, vertices shared
+  render::Surface body;  // closed, vertices shared
 };
 
 struct Rerun {
@@ -24,6 +25,12 @@ struct Rerun {
 /// `how`: kernel and threads. `steps`: after which to take the surface, from 0, ascending; one capture each, also when
 /// a step stands there twice. Throws Error(diverged) when a state hash differs from the recording's.
 Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps);
+
+/// Runs the recording again on `sim`, which is at its start, and calls `take` with each of `steps` (from 0, ascending;
+/// twice for one that stands there twice) when that step has been done and `camera`, which looks at `sim`, has seen it.
+/// Throws Error(diverged) when a state hash differs from the recording's.
+void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, const std::vector<std::size_t>& steps,
+           const std::function<void(std::size_t)>& take);
 
 /// The four phases of the paper's Fig 11: at rest, first touch, half way, deepest.
 std::vector<std::size_t> phase_steps(const std::vector<Sample>& samples);

@@ -10,5 +10,6 @@ void add_mesh(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_export(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_patterns(CLI::App& app);
 
 }  // namespace crumble::app

@@ -5,13 +5,13 @@
 
 #include "crumble/base/clock.hpp"
 #include "crumble/base/text.hpp"
-#include "crumble/fracture/fragments.hpp"
 
 namespace crumble::app {
 namespace {
 
 // 2.7 hours at 1 ms; a step takes 160 bytes of recording and samples.
 constexpr double kMaxSteps = 1e7;
+constexpr double kDebrisRate = 60;  // Hz
 
 std::unique_ptr<Device> open_press_device(const Scene& scene, const PressOptions& press) {
   return open_press(press, scene.def.step.tau * scene.def.step.iterations);
@@ -59,6 +59,14 @@ Motion open_motion(const Scene& scene, const std::string& device) {
   return {open_press_device(scene, press), {}, duration(scene, device, press, nullptr)};
 }
 
+void clear_debris(Experiment& experiment, const DebrisOptions& debris) {
+  for (const std::uint32_t fragment : experiment.sim.find_debris(debris.rule)) {
+    if (experiment.sim.fragment_state(fragment) == debris.fate) continue;
+    experiment.sim.set_fragment_state(fragment, debris.fate);
+    experiment.recording.add_fragment_state(fragment, debris.fate);
+  }
+}
+
 std::size_t count_steps(double seconds, double tick) {
   const double steps = std::floor(seconds / tick + 1.5);
   if (!(steps <= kMaxSteps)) {
@@ -66,6 +74,14 @@ std::size_t count_steps(double seconds, double tick) {
                                      to_text(tick) + " s, the most that a run keeps");
   }
   return static_cast<std::size_t>(steps);
+}
+
+void require_done(const StepInfo& info, std::size_t step) {
+  if (info.status == Code::diverged) {
+    throw Error(Code::diverged,
+                "the body diverged at step " + std::to_string(info.step) + ", node " + std::to_string(info.bad_node));
+  }
+  if (info.status != Code{}) throw Error(info.status, "step " + std::to_string(step) + " was refused: bad pose");
 }
 
 }  // namespace
@@ -78,7 +94,7 @@ double tool_depth(const Scene& scene, const Pose& pose) {
 }
 
 std::size_t count_fragments(const Simulation& sim) {
-  return FragmentLabeler(sim.mesh().node_count(), sim.mesh().springs).label(sim.intact());
+  return sim.fragments().count() - sim.counters().removed;
 }
 
 std::size_t count_inverted(const Simulation& sim) {
@@ -88,7 +104,7 @@ std::size_t count_inverted(const Simulation& sim) {
 }
 
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
-                          const std::function<void(double)>& progress) {
+                          const DebrisOptions& debris, const std::function<void(double)>& progress) {
   if (seconds) require_positive("--seconds", *seconds);
   Motion motion = open_motion(scene, device);
   const Workspace workspace(motion.workspace);
@@ -98,6 +114,7 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
 
   const double tick = experiment.scene.def.step.tau * experiment.scene.def.step.iterations;
   const std::size_t steps = count_steps(seconds.value_or(motion.seconds), tick);
+  const auto debris_period = static_cast<std::size_t>(std::ceil(1 / (kDebrisRate * tick)));
   std::vector<double> cpu;
   DeviceSample sample;
   for (std::size_t step = 0; step < steps; ++step) {
@@ -106,20 +123,19 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
     experiment.resampled |= (sample.flags & sample_flag::kResampled) != 0;
     const Pose pose = workspace.to_scene(sample.pose);
 
+    if (debris.rule.max_nodes > 0 && step % debris_period == 0) clear_debris(experiment, debris);
     const double before = thread_cpu_seconds();
     const StepInfo& info = experiment.sim.step({&pose, 1});
     cpu.push_back(1e6 * (thread_cpu_seconds() - before));
-    if (info.status == Code::diverged) {
-      throw Error(Code::diverged,
-                  "the body diverged at step " + std::to_string(info.step) + ", node " + std::to_string(info.bad_node));
-    }
-    if (info.status != Code{}) throw Error(info.status, "step " + std::to_string(step) + " was refused: bad pose");
+    require_done(info, step);
 
     const Wrench& wrench = experiment.sim.wrench(0);
     motion.device->write(workspace.force_to_device(wrench.force), workspace.torque_to_device(wrench.torque));
     experiment.recording.add({&pose, 1}, experiment.sim.state_hash());
     experiment.samples.push_back(
         {info.time, tool_depth(experiment.scene, pose), wrench, experiment.sim.counters().cuts});
+    const auto events = experiment.sim.events();
+    experiment.events.insert(experiment.events.end(), events.begin(), events.end());
     experiment.peak_force = std::max(experiment.peak_force, norm(wrench.force));
     if (progress && step % 256 == 0) progress(static_cast<double>(step) / static_cast<double>(steps));
   }

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   crumble::app::add_replay(app);
   crumble::app::add_export(app);
   crumble::app::add_bench(app);
+  crumble::app::add_patterns(app);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const crumble::Error& error) {

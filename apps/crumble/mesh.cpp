@@ -4,9 +4,10 @@
 
 #include "commands.hpp"
 #include "crumble/base/clock.hpp"
-#include "crumble/base/error.hpp"
+#include "crumble/base/file.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "crumble/tetmesh/vtk_file.hpp"
+#include "grids.hpp"
 #include "output.hpp"
 #include "render/mesh_file.hpp"
 
@@ -81,7 +82,11 @@ BubbleMeshOptions bubble_options(const MeshOptions& options) {
 
 void write_mesh(const TetMesh& mesh, const std::filesystem::path& path) {
   if (path.extension() == ".vtk") return write_vtk(mesh, path);
-  render::write_mesh_file({mesh.positions, mesh.boundary}, {}, path);
+  if (path.extension() == ".vtu") return write_text(path, to_vtu(body_grid(mesh)));
+  render::Surface surface;
+  surface.mesh.positions = mesh.positions;
+  surface.mesh.triangles = mesh.boundary;
+  render::write_mesh_file(surface, path);
 }
 
 double share(const std::vector<std::uint8_t>& flags) {
@@ -118,7 +123,7 @@ nlohmann::ordered_json to_json(const BubbleMesh& body, const std::string& struct
 
 void mesh(const MeshOptions& options) {
   const std::filesystem::path out = options.out;
-  if (!out.empty() && out.extension() != ".vtk") require_surface_extension(out, ".vtk ");
+  if (!out.empty()) require_extension(out, ".vtk " + render::mesh_file_extensions());
   const std::unique_ptr<Shape> shape = make_shape(options);
   const double before = thread_cpu_seconds();
   const BubbleMesh body = generate(*shape, bubble_options(options));
@@ -152,7 +157,7 @@ void add_mesh(CLI::App& app) {
                    "relaxed: even distances near the surface; lattice: lattice neighbours everywhere, the fastest")
       ->capture_default_str();
   command->add_option("--offset", options->offset, "Shift of the lattice, in spacings")->expected(3);
-  command->add_option("--out", options->out, "Mesh as .vtk, or its surface as " + render::mesh_file_extensions());
+  command->add_option("--out", options->out, "Mesh as .vtk .vtu, or its surface as .glb .obj .ply .stl");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options] { mesh(*options); });
 }

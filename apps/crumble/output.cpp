@@ -25,6 +25,33 @@ std::string force_table(const Experiment& experiment) {
   return text;
 }
 
+const char* name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::cut:
+      return "cut";
+    case EventKind::split:
+      return "split";
+    case EventKind::contact_begin:
+      return "contact_begin";
+    default:
+      return "contact_end";
+  }
+}
+
+// What does not apply is empty.
+std::string event_table(const Experiment& experiment) {
+  std::string text = "time_s,step,kind,spring,node,holder,fragment,parent,x_m,y_m,z_m,energy_j\n";
+  for (const Event& event : experiment.events) {
+    text += to_text(event.time) + ',' + std::to_string(event.step) + ',' + name_of(event.kind);
+    for (const std::uint32_t index : {event.spring, event.node, event.holder, event.fragment, event.parent}) {
+      text += index == Event::kNone ? "," : ',' + std::to_string(index);
+    }
+    for (int axis = 0; axis < 3; ++axis) text += ',' + to_text(event.place[axis]);
+    text += ',' + to_text(event.energy) + '\n';
+  }
+  return text;
+}
+
 void write_plot(const Experiment& experiment, const std::filesystem::path& path) {
   std::vector<render::ForceSample> samples;
   for (const Sample& s : experiment.samples) samples.push_back({s.time, s.depth, s.wrench.force, s.cuts});
@@ -42,18 +69,18 @@ render::Camera phase_camera(const Experiment& experiment, double aspect) {
   return render::fit_camera(low, high, {-0.45, -0.5, -1}, 0.4, aspect, 0.02);
 }
 
-void write_phases(const Experiment& experiment, const std::vector<Capture>& captures,
-                  const std::filesystem::path& path) {
+// `bare`: without the tool, which hides much of what it has broken.
+void write_phases(const Experiment& experiment, const std::vector<Capture>& captures, bool bare,
+                  render::Renderer& renderer, const std::filesystem::path& path) {
   constexpr int kWidth = 640, kHeight = 480;
-  render::OffscreenContext context;
-  render::Renderer renderer;
   render::Scene scene;
   scene.camera = phase_camera(experiment, double{kWidth} / kHeight);
   std::array<render::Image, 4> images;
   std::array<std::string, 4> captions;
   for (std::size_t i = 0; i < 4; ++i) {
     const Capture& capture = captures[i];
-    scene.meshes = {capture.body, tool_mesh(experiment.scene.def.tools[0].shape, capture.tool)};
+    scene.meshes = {capture.body.mesh};
+    if (!bare) scene.meshes.push_back(tool_mesh(experiment.scene.def.tools[0].shape, capture.tool));
     images[i] = renderer.draw(scene, kWidth, kHeight);
     const Sample& sample = experiment.samples[capture.step];
     char text[80];
@@ -66,26 +93,25 @@ void write_phases(const Experiment& experiment, const std::vector<Capture>& capt
 
 }  // namespace
 
-void write_surface(const Capture& capture, const std::filesystem::path& path) {
-  render::write_mesh_file({capture.body.positions, capture.body.triangles}, {}, path);
-}
-
-void require_surface_extension(const std::filesystem::path& path, const std::string& others) {
-  const std::string known = render::mesh_file_extensions();
-  if (!path.has_extension() || (known + " ").find(path.extension().string() + " ") == std::string::npos) {
-    throw Error(Code::unsupported, "--out '" + path.string() + "' must end in one of " + others + known);
+void require_extension(const std::filesystem::path& path, const std::string& extensions) {
+  if (!path.has_extension() || (extensions + " ").find(path.extension().string() + " ") == std::string::npos) {
+    throw Error(Code::unsupported, "--out '" + path.string() + "' must end in one of " + extensions);
   }
 }
 
 void write_outputs(const Experiment& experiment, const Rerun& again, OutputFolder& folder) {
   const std::filesystem::path& place = folder.temporary();
   write_text(place / "force.csv", force_table(experiment));
+  write_text(place / "events.csv", event_table(experiment));
   experiment.recording.save(place / "experiment.crec");
   for (std::size_t i = 0; i < again.captures.size(); ++i) {
-    write_surface(again.captures[i], place / ("surface_" + std::to_string(i) + ".ply"));
+    render::write_mesh_file(again.captures[i].body, place / ("surface_" + std::to_string(i) + ".ply"));
   }
   write_plot(experiment, place / "force.svg");
-  write_phases(experiment, again.captures, place / "phases.png");
+  render::OffscreenContext context;
+  render::Renderer renderer;
+  write_phases(experiment, again.captures, false, renderer, place / "phases.png");
+  write_phases(experiment, again.captures, true, renderer, place / "phases_bare.png");
   folder.commit();
 }
 

@@ -9,14 +9,12 @@
 
 namespace crumble::app {
 
-/// Writes force.csv, force.svg, phases.png, surface_*.ply and experiment.crec: all of them or none.
+/// Writes force.csv, events.csv, force.svg, phases.png, phases_bare.png, surface_*.ply and experiment.crec: all of them
+/// or none.
 void write_outputs(const Experiment& experiment, const Rerun& again, OutputFolder& folder);
 
-/// The closed surface, metres, in the format of the path's extension.
-void write_surface(const Capture& capture, const std::filesystem::path& path);
-/// Throws Error(unsupported) when write_surface would refuse the extension: known before the long work. `others` stands
-/// before the list of those that there are.
-void require_surface_extension(const std::filesystem::path& path, const std::string& others = "");
+/// Throws Error(unsupported) unless `path` ends in one of `extensions` (".a .b"): known before the long work.
+void require_extension(const std::filesystem::path& path, const std::string& extensions);
 
 std::string to_json(const Experiment& experiment, const Rerun& again);
 std::string to_report(const Experiment& experiment, const Rerun& again, const std::filesystem::path& folder);

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -38,24 +36,6 @@ void replay_recording(const std::string& path, const SolverOptions& solver, bool
   }
 }
 
-struct ExportOptions {
-  std::string recording, out;
-  double at = 0;
-};
-
-void export_surface(const ExportOptions& options) {
-  require_surface_extension(options.out);
-  const Recording recording = Recording::load(options.recording);
-  const StepSettings settings = recording.start().definition().step;
-  const double tick = settings.tau * settings.iterations;
-  const double last = static_cast<double>(recording.step_count()) * tick;
-  require_in_range("--at", options.at, 0, last);
-  if (recording.step_count() == 0) throw Error(Code::empty, "recording '" + options.recording + "' has no step");
-  const auto step = static_cast<std::size_t>(std::max(std::floor(options.at / tick + 0.5), 1.0)) - 1;
-  const Rerun again = rerun(recording, {}, {std::min(step, recording.step_count() - 1)});
-  write_surface(again.captures.at(0), options.out);
-}
-
 }  // namespace
 
 void add_replay(CLI::App& app) {
@@ -67,15 +47,6 @@ void add_replay(CLI::App& app) {
   add_options(*command, *solver);
   command->add_flag("--json", *json, "Print one JSON object");
   command->callback([path, solver, json] { replay_recording(*path, *solver, *json); });
-}
-
-void add_export(CLI::App& app) {
-  auto* command = app.add_subcommand("export", "Write the surface that a recording has at a given time");
-  auto options = std::make_shared<ExportOptions>();
-  command->add_option("recording", options->recording, "A file that `run --out` wrote")->required();
-  command->add_option("--at", options->at, "Simulated seconds from the recording's start")->required();
-  command->add_option("--out", options->out, "Surface file by extension")->required();
-  command->callback([options] { export_surface(*options); });
 }
 
 }  // namespace crumble::app

@@ -27,10 +27,42 @@ Json counters(const Experiment& experiment) {
           {"tool_jumps", c.tool_jumps},
           {"suspended_steps", c.suspended_steps},
           {"bad_poses", c.bad_poses},
+          {"asleep", c.asleep},
+          {"woken", c.woken},
+          {"removed", c.removed},
+          {"removed_nodes", c.removed_nodes},
+          {"dropped_events", c.dropped_events},
           {"inverted_tetrahedra", count_inverted(experiment.sim)},
           {"clamped", 0},
           {"truncated", 0},
           {"dropped", 0}};
+}
+
+std::size_t count_events(const Experiment& experiment, EventKind kind) {
+  return static_cast<std::size_t>(std::count_if(experiment.events.begin(), experiment.events.end(),
+                                                [&](const Event& event) { return event.kind == kind; }));
+}
+
+Json events(const Experiment& experiment) {
+  return {{"cut", count_events(experiment, EventKind::cut)},
+          {"split", count_events(experiment, EventKind::split)},
+          {"contact_begin", count_events(experiment, EventKind::contact_begin)},
+          {"contact_end", count_events(experiment, EventKind::contact_end)}};
+}
+
+double released_energy(const Experiment& experiment) {
+  double energy = 0;
+  for (const Event& event : experiment.events) energy += event.kind == EventKind::cut ? event.energy : 0;
+  return energy;
+}
+
+// Nodes of the largest fragment.
+std::uint32_t largest_fragment(const Simulation& sim) {
+  std::uint32_t largest = 0;
+  for (std::uint32_t f = 0; f < sim.fragments().count(); ++f) {
+    largest = std::max(largest, sim.fragments().record(f).node_count);
+  }
+  return largest;
 }
 
 Json ledger(const EnergyLedger& l) {
@@ -116,6 +148,9 @@ std::string to_json(const Experiment& experiment, const Rerun& again) {
   json["steps"] = experiment.samples.size();
   json["cuts"] = experiment.sim.counters().cuts;
   json["fragments"] = count_fragments(experiment.sim);
+  json["largest_fragment_nodes"] = largest_fragment(experiment.sim);
+  json["events"] = events(experiment);
+  json["cut_energy_j"] = released_energy(experiment);
   json["peak_force_n"] = experiment.peak_force;
   Json force = Json::array();
   for (const Sample& s : experiment.samples) {
@@ -159,8 +194,10 @@ std::string to_report(const Experiment& experiment, const Rerun& again, const st
   text += line("step        %s: CPU p50 %.1f us, p99 %.1f us, max %.1f us: %.0f times the 300 Hz that a hand needs\n",
                solver_text(experiment.sim).c_str(), experiment.cost.p50, experiment.cost.p99, experiment.cost.max,
                rate_multiple(experiment.cost));
-  text += line("fracture    %llu springs cut, %zu fragments\n",
-               static_cast<unsigned long long>(experiment.sim.counters().cuts), count_fragments(experiment.sim));
+  const std::size_t fragments = count_fragments(experiment.sim);
+  text += line("fracture    %llu springs cut, which held %.2f mJ; %zu fragment%s, the largest of %u nodes\n",
+               static_cast<unsigned long long>(experiment.sim.counters().cuts), 1e3 * released_energy(experiment),
+               fragments, fragments == 1 ? "" : "s", largest_fragment(experiment.sim));
   text += line("force       peak %.2f N\n", experiment.peak_force);
   text +=
       line("energy      greatest gain of a solve %.1e of the scale; %llu nodes guarded\n",

@@ -14,6 +14,7 @@ struct RunOptions {
   std::string scene, device, preset = "default", precision;
   std::optional<double> seconds, tau;
   SolverOptions solver;
+  std::uint32_t sleep_debris = 0, remove_debris = 0;
   std::string out;
   bool json = false;
 };
@@ -22,7 +23,16 @@ void show_progress(double share) {
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r%3.0f %%", 100 * share);
 }
 
+DebrisOptions debris_options(const RunOptions& options) {
+  if (options.sleep_debris > 0 && options.remove_debris > 0) {
+    throw Error(Code::invalid_value, "--sleep-debris and --remove-debris exclude each other");
+  }
+  if (options.remove_debris > 0) return {{options.remove_debris}, FragmentState::removed};
+  return {{options.sleep_debris}, FragmentState::asleep};
+}
+
 void run(const RunOptions& options) {
+  const DebrisOptions debris = debris_options(options);
   std::optional<Precision> precision;
   if (!options.precision.empty()) precision = bench::parse_precision(options.precision);
   check(options.solver);
@@ -39,7 +49,8 @@ void run(const RunOptions& options) {
   if (options.tau) scene.def.step.tau = *options.tau;
   if (precision) scene.def.step.precision = *precision;
   apply(options.solver, scene.def.step);
-  const Experiment experiment = run_experiment(std::move(scene), options.device, options.seconds, show_progress);
+  const Experiment experiment =
+      run_experiment(std::move(scene), options.device, options.seconds, debris, show_progress);
   const Rerun again = rerun(experiment.recording, experiment.scene.def.step,
                             folder ? phase_steps(experiment.samples) : std::vector<std::size_t>{});
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
@@ -62,8 +73,12 @@ void add_run(CLI::App& app) {
   command->add_option("--preset", options->preset, "default or paper")->capture_default_str();
   command->add_option("--precision", options->precision, "float64 or float32; else what the scene says");
   add_options(*command, options->solver);
+  command->add_option("--sleep-debris", options->sleep_debris,
+                      "Let fragments of up to so many nodes sleep once at rest");
+  command->add_option("--remove-debris", options->remove_debris,
+                      "Remove fragments of up to so many nodes once at rest");
   command->add_option("--out", options->out,
-                      "Folder for force.csv, force.svg, phases.png, surface_*.ply, experiment.crec");
+                      "Folder for force.csv, events.csv, force.svg, phases*.png, surface_*.ply, experiment.crec");
   command->add_flag("--json", options->json, "Print one JSON object instead of the report");
   command->callback([options] { run(*options); });
 }

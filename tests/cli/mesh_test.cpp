@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/ply.hpp"
 #include "crumble/base/file.hpp"
 #include "render/temporary_folder.hpp"
+#include "support/mesh_files.hpp"
 
 namespace crumble::cli {
 namespace {
@@ -70,10 +70,23 @@ TEST(Mesh, WritesMeshAndSurface) {
   EXPECT_NE(vtk.find("POINTS 600 double"), std::string::npos);
   EXPECT_NE(vtk.find("CELLS " + cube.at("tetrahedra").dump()), std::string::npos);
   mesh_json({"cube", "--out", folder.file("cube.ply").string()});
-  const PlyFile surface = read_ply(folder.file("cube.ply"));
-  EXPECT_EQ(surface.unmatched_edges, 0u);
-  EXPECT_EQ(surface.triangles, 2 * (306u - 2));
-  EXPECT_NEAR(surface.volume, 27e-6, 1e-10);
+  const TriangleMesh surface = read_ply(folder.file("cube.ply")).mesh;
+  EXPECT_EQ(find_surface_defects(surface).total(), 0u);
+  EXPECT_EQ(surface.triangles.size(), 2 * (306u - 2));
+  EXPECT_NEAR(volume(surface), 27e-6, 1e-10);
+  mesh_json({"cube", "--out", folder.file("cube.vtu").string()});
+  const VtuFile body = read_vtu(folder.file("cube.vtu"));
+  EXPECT_EQ(body.cell_type, 10);
+  EXPECT_EQ(body.cells.size(), cube.at("tetrahedra"));
+  double sum = 0;
+  for (const auto& cell : body.cells) {
+    const auto edge = [&](std::size_t k) -> Vec3 { return body.points[cell.at(k)] - body.points[cell.at(0)]; };
+    sum += edge(1).cross(edge(2)).dot(edge(3)) / 6;
+  }
+  EXPECT_NEAR(sum, 27e-6, 1e-10);
+  const std::vector<double>& kinds = body.point_data.at("kind");
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), 0), 8) << "corners of a cube";
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), 3), 600 - 306) << "inside";
 }
 
 }  // namespace

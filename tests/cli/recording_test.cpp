@@ -1,4 +1,4 @@
-// `crumble replay` and `crumble export`, on good recordings and on damaged ones.
+// `crumble replay`, on good recordings and on damaged ones.
 #include "crumble/sim/recording.hpp"
 
 #include <gtest/gtest.h>
@@ -6,12 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/ply.hpp"
+#include "cli/recorded_press.hpp"
 #include "crumble/base/file.hpp"
 #include "crumble/base/hash.hpp"
 #include "crumble/base/random.hpp"
 #include "render/temporary_folder.hpp"
-#include "scenes/scene.hpp"
 
 namespace crumble::cli {
 namespace {
@@ -20,30 +19,16 @@ using nlohmann::json;
 using render::TemporaryFolder;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kSteps = 501;
 constexpr std::size_t kStepBytes = 7 * 8;  // a pose
+constexpr std::size_t kTail = 8 + 8;       // the number of the host's changes to fragments, none; the checksum
 
-// Half a second of a fast press on the slab, in which springs are cut.
 class RecordingTest : public testing::Test {
  protected:
   void SetUp() override {
-    const Scene scene = load_scene("tofu_slab", Preset::standard);
-    PressOptions press = scene.press;
-    press.speed = 0.015;
-    const auto device = open_press(press, scene.def.step.tau);
-    Simulation sim(scene.def);
-    Recording made(sim);
-    DeviceSample sample;
-    for (std::size_t step = 0; step < kSteps; ++step) {
-      ASSERT_NE(device->read(sample), ReadStatus::lost);
-      sim.step({&sample.pose, 1});
-      made.add({&sample.pose, 1}, sim.state_hash());
-    }
-    made.save(recording);
+    const Simulation sim = record_press("tofu_slab", 0.015, recording);
     bytes = read_bytes(recording);
     hash = sim.state_hash();
     cuts = sim.counters().cuts;
-    ASSERT_GT(cuts, 10u);
   }
   // What `replay` says to a recording of these bytes.
   Outcome replay_of(const Bytes& damaged) {
@@ -57,8 +42,10 @@ class RecordingTest : public testing::Test {
     const std::uint64_t value = hash.value();
     for (std::size_t i = 0; i < 8; ++i) damaged[damaged.size() - 8 + i] = static_cast<std::uint8_t>(value >> 8 * i);
   }
-  // Where the pose of a step begins; the hashes and the checksum stand behind the poses.
-  std::size_t pose_at(std::size_t step) const { return bytes.size() - 16 - kSteps * 8 - (kSteps - step) * kStepBytes; }
+  // Where the pose of a step begins; the hashes and the tail stand behind the poses.
+  std::size_t pose_at(std::size_t step) const {
+    return bytes.size() - kTail - kSteps * 8 - (kSteps - step) * kStepBytes;
+  }
 
   TemporaryFolder folder;
   const std::string recording = folder.file("good.crec").string();
@@ -126,7 +113,7 @@ TEST_F(RecordingTest, DiffersWhenAPoseWasChanged) {
 
 TEST_F(RecordingTest, DiffersWhenAHashWasChanged) {
   Bytes damaged = bytes;
-  damaged[damaged.size() - 16 - 8 * 100] ^= 0x10;
+  damaged[damaged.size() - kTail - 8 * 100] ^= 0x10;
   repair_checksum(damaged);
   const Outcome outcome = replay_of(damaged);
   EXPECT_EQ(outcome.code, 1);
@@ -147,44 +134,13 @@ TEST_F(RecordingTest, IsNeverBelievedBlindly) {
   }
 }
 
-TEST_F(RecordingTest, GivesItsSurfaceAtAnyTime) {
-  for (const char* name : {"rest.ply", "late.ply"}) {
-    const bool rest = std::string(name) == "rest.ply";
-    const std::string path = folder.file(name).string();
-    const Outcome outcome = crumble({"export", recording, "--at", rest ? "0" : "0.5", "--out", path});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const PlyFile surface = read_ply(path);
-    EXPECT_EQ(surface.unmatched_edges, 0u);
-    EXPECT_EQ(surface.vertices == 382, rest) << "cut faces have vertices of their own";
-    EXPECT_NEAR(surface.volume, 9e-6, rest ? 1e-8 : 5e-6);
-  }
-  for (const char* extension : {".obj", ".stl", ".glb"}) {
-    const std::string path = folder.file("surface").string() + extension;
-    EXPECT_EQ(crumble({"export", recording, "--at", "0.2", "--out", path}).code, 0);
-    EXPECT_GT(std::filesystem::file_size(path), 1000u);
-  }
-}
-
-TEST_F(RecordingTest, RefusesTimesAndNamesThatItDoesNotHave) {
-  const std::string ply = folder.file("surface.ply").string();
-  const std::vector<std::vector<std::string>> refused{
-      {"--at must lie in [0, 0.501], is 0.6", "export", recording, "--at", "0.6", "--out", ply},
-      {"--at must lie in [0, 0.501], is -0.1", "export", recording, "--at", "-0.1", "--out", ply},
-      {"--at must be finite, is nan", "export", recording, "--at", "nan", "--out", ply},
-      {"surface.xyz' must end in one of .glb .obj .ply .stl", "export", recording, "--at", "0.1", "--out",
-       folder.file("surface.xyz").string()},
-      {"must end in one of", "export", recording, "--at", "0.1", "--out", folder.file("surface").string()},
-      {"none/surface.ply", "export", recording, "--at", "0.1", "--out", folder.file("none/surface.ply").string()},
-      {"none.crec", "export", folder.file("none.crec").string(), "--at", "0.1", "--out", ply},
-      {"none.crec", "replay", folder.file("none.crec").string()},
-      {"is not a recording", "replay", CRUMBLE_SOURCE_DIR "/examples/scenes/tofu_cube.json"},
-  };
-  for (const std::vector<std::string>& row : refused) {
-    const Outcome outcome = crumble({row.begin() + 1, row.end()});
-    EXPECT_EQ(outcome.code, 1) << row[0];
-    EXPECT_NE(outcome.err.find(row[0]), std::string::npos) << outcome.err;
-  }
-  EXPECT_EQ(folder.size(), 1u) << "nothing half-written";
+TEST_F(RecordingTest, IsRefusedWhenItIsNone) {
+  const Outcome missing = crumble({"replay", folder.file("none.crec").string()});
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_NE(missing.err.find("none.crec"), std::string::npos) << missing.err;
+  const Outcome scene = crumble({"replay", CRUMBLE_SOURCE_DIR "/examples/scenes/tofu_cube.json"});
+  EXPECT_EQ(scene.code, 1);
+  EXPECT_NE(scene.err.find("is not a recording"), std::string::npos) << scene.err;
 }
 
 }  // namespace

@@ -92,6 +92,16 @@ TEST(Refusals, OfMeshes) {
   for (const Refusal& refusal : refusals) expect_refused(refusal);
 }
 
+TEST(Refusals, OfPatterns) {
+  const TemporaryFolder folder;
+  const std::string png = folder.file("patterns.png").string(), svg = folder.file("patterns.svg").string();
+  expect_refused({{"patterns", "--mode", "fancy", "--out", png}, {"--mode 'fancy'", "cracks paper"}});
+  expect_refused({{"patterns", "--out", svg}, {"--out '" + svg + "' must end in .png"}});
+  expect_refused({{"patterns", "--out", folder.file("none/patterns.png").string()}, {"none/patterns.png"}});
+  expect_refused({{"patterns"}, {"--out"}});
+  EXPECT_EQ(folder.size(), 0u);
+}
+
 TEST(Refusals, OfFilesThatAreNotWhole) {
   const TemporaryFolder folder;
   const std::string scene = folder.file("scene.json").string(), motion = folder.file("motion.ctraj").string();

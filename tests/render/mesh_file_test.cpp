@@ -14,13 +14,14 @@
 #include "crumble/base/error.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "render/temporary_folder.hpp"
+#include "support/mesh_files.hpp"
 
 namespace crumble::render {
 namespace {
 
 struct ReadBack {
   TriangleMesh mesh;
-  std::vector<Vec3> normals, colours;
+  std::vector<Vec3> colours;
 };
 
 Vec3 to_vec(const aiVector3D& v) {
@@ -38,7 +39,6 @@ ReadBack read_with_assimp(const std::filesystem::path& path) {
   const aiMesh& mesh = *scene->mMeshes[0];
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     out.mesh.vertices.push_back(to_vec(mesh.mVertices[i]));
-    if (mesh.HasNormals()) out.normals.push_back(to_vec(mesh.mNormals[i]));
     if (mesh.HasVertexColors(0)) {
       const aiColor4D& c = mesh.mColors[0][i];
       out.colours.push_back({c.r, c.g, c.b});
@@ -50,6 +50,13 @@ ReadBack read_with_assimp(const std::filesystem::path& path) {
     out.mesh.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
   }
   return out;
+}
+
+Surface plain(const TriangleMesh& mesh) {
+  Surface surface;
+  surface.mesh.positions = mesh.vertices;
+  surface.mesh.triangles = mesh.triangles;
+  return surface;
 }
 
 /// assimp's reader gives every corner of an obj face a vertex of its own, so the file's own lines are read here.
@@ -64,16 +71,12 @@ ReadBack read_obj(const std::filesystem::path& path) {
     if (kind == "v" && words >> v.x() >> v.y() >> v.z()) {
       out.mesh.vertices.push_back(v);
       if (words >> colour.x() >> colour.y() >> colour.z()) out.colours.push_back(colour);
-    } else if (kind == "vn" && words >> v.x() >> v.y() >> v.z()) {
-      out.normals.push_back(v);
     } else if (kind == "f") {
       Triangle& triangle = out.mesh.triangles.emplace_back();
       for (std::uint32_t& corner : triangle) {
         std::string indices;
         words >> indices;
-        const std::string position = indices.substr(0, indices.find('/'));
-        EXPECT_TRUE(indices == position || indices == position + "//" + position) << indices;
-        corner = static_cast<std::uint32_t>(std::stoul(position)) - 1;
+        corner = static_cast<std::uint32_t>(std::stoul(indices)) - 1;
       }
     }
   }
@@ -81,20 +84,14 @@ ReadBack read_obj(const std::filesystem::path& path) {
 }
 
 ReadBack read_back(const std::filesystem::path& path) {
-  return path.extension() == ".obj" ? read_obj(path) : read_with_assimp(path);
-}
-
-/// Vertices of equal position become one: for formats whose triangles share none.
-TriangleMesh weld(const TriangleMesh& mesh) {
-  std::map<std::array<double, 3>, std::uint32_t> ids;
-  TriangleMesh out;
-  std::vector<std::uint32_t> id_of;
-  for (const Vec3& p : mesh.vertices) {
-    const auto [at, is_new] = ids.emplace(std::array{p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(ids.size()));
-    if (is_new) out.vertices.push_back(p);
-    id_of.push_back(at->second);
+  if (path.extension() == ".obj") return read_obj(path);
+  if (path.extension() != ".vtu") return read_with_assimp(path);
+  const VtuFile file = read_vtu(path);
+  ReadBack out{file.mesh(), {}};
+  const auto colours = file.point_data.find("colour");
+  for (std::size_t i = 0; colours != file.point_data.end() && i < file.points.size(); ++i) {
+    out.colours.emplace_back(&colours->second[3 * i]);
   }
-  for (const auto& [a, b, c] : mesh.triangles) out.triangles.push_back({id_of[a], id_of[b], id_of[c]});
   return out;
 }
 
@@ -136,7 +133,7 @@ TEST_P(MeshFileTest, KeepsEveryVertexInItsPlaceAndOrder) {
   for (const TriangleMesh& mesh : {two_touching_boxes(), fine_torus()}) {
     ASSERT_EQ(find_surface_defects(mesh).total(), 0u);
     const auto path = folder.file(std::string("surface") + GetParam());
-    write_mesh_file(mesh, {}, path);
+    write_mesh_file(plain(mesh), path);
     EXPECT_EQ(folder.size(), 1u);
     const ReadBack back = read_back(path);
     ASSERT_EQ(back.mesh.vertices.size(), mesh.vertices.size());
@@ -148,33 +145,25 @@ TEST_P(MeshFileTest, KeepsEveryVertexInItsPlaceAndOrder) {
   }
 }
 
-TEST_P(MeshFileTest, KeepsNormalsAndColours) {
+TEST_P(MeshFileTest, KeepsColours) {
   const TemporaryFolder folder;
-  const TriangleMesh mesh = two_touching_boxes();
-  SurfaceAttributes attributes;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    attributes.normals.push_back(normalized(mesh.vertices[i]));
-    attributes.colours.push_back({static_cast<double>(i) / 20, 0.5, 1});
-  }
+  Surface surface = plain(two_touching_boxes());
+  for (std::size_t i = 0; i < 16; ++i) surface.colours.push_back({static_cast<double>(i) / 20, 0.5, 1});
   const auto path = folder.file(std::string("surface") + GetParam());
-  write_mesh_file(mesh, attributes, path);
+  write_mesh_file(surface, path);
   const ReadBack back = read_back(path);
-  ASSERT_EQ(back.mesh.triangles, mesh.triangles);
-  ASSERT_EQ(back.normals.size(), mesh.vertices.size());
-  ASSERT_EQ(back.colours.size(), mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    EXPECT_LT(norm(back.normals[i] - attributes.normals[i]), 1e-6);
-    EXPECT_LT(norm(back.colours[i] - attributes.colours[i]), 1.0 / 255);
-  }
+  ASSERT_EQ(back.mesh.triangles, surface.mesh.triangles);
+  ASSERT_EQ(back.colours.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_LT(norm(back.colours[i] - surface.colours[i]), 1.0 / 255);
 }
 
-INSTANTIATE_TEST_SUITE_P(ByExtension, MeshFileTest, ::testing::Values(".ply", ".obj", ".glb"),
+INSTANTIATE_TEST_SUITE_P(ByExtension, MeshFileTest, ::testing::Values(".ply", ".obj", ".glb", ".vtu"),
                          [](const auto& parameter) { return std::string(parameter.param + 1); });
 
 TEST(MeshFile, AssimpReadsTheObjToo) {
   const TemporaryFolder folder;
   const TriangleMesh mesh = fine_torus();
-  write_mesh_file(mesh, {}, folder.file("surface.obj"));
+  write_mesh_file(plain(mesh), folder.file("surface.obj"));
   const TriangleMesh back = read_with_assimp(folder.file("surface.obj")).mesh;
   EXPECT_EQ(back.triangles.size(), mesh.triangles.size());
   EXPECT_NEAR(volume(back), volume(mesh), 1e-6 * volume(mesh));
@@ -183,7 +172,7 @@ TEST(MeshFile, AssimpReadsTheObjToo) {
 TEST(MeshFile, StlKeepsTrianglesAndClosesWhenWelded) {
   const TemporaryFolder folder;
   const TriangleMesh mesh = fine_torus();
-  write_mesh_file(mesh, {}, folder.file("surface.stl"));
+  write_mesh_file(plain(mesh), folder.file("surface.stl"));
   const TriangleMesh back = weld(read_back(folder.file("surface.stl")).mesh);
   EXPECT_EQ(back.vertices.size(), mesh.vertices.size());
   EXPECT_EQ(back.triangles.size(), mesh.triangles.size());
@@ -193,7 +182,7 @@ TEST(MeshFile, StlKeepsTrianglesAndClosesWhenWelded) {
 
 Code code_of(const TriangleMesh& mesh, const std::filesystem::path& path) {
   try {
-    write_mesh_file(mesh, {}, path);
+    write_mesh_file(plain(mesh), path);
   } catch (const Error& error) {
     return error.code();
   }
@@ -214,9 +203,9 @@ TEST(MeshFile, RefusesWithNothingWritten) {
   EXPECT_EQ(code_of(mesh, folder.file("surface.obj")), Code::invalid_value);
   EXPECT_EQ(folder.size(), 0u);
   try {
-    write_mesh_file(two_touching_boxes(), {}, folder.file("a.xyz"));
+    write_mesh_file(plain(two_touching_boxes()), folder.file("a.xyz"));
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find(".glb .obj .ply .stl"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find(".glb .obj .ply .stl .vtu"), std::string::npos);
   }
 }
 
