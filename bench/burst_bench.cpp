@@ -3,6 +3,8 @@
 //   ./burst_bench
 // A block of about 8000 springs hangs from its top face under a weight that tears it at once: the springs of a layer
 // are equally long, so they break in the same step.
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -35,6 +37,13 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// Pages that the system had to give this thread so far: none should be in a step.
+long page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
 template <class Work>
 double microseconds(Work&& work) {
   const double before = thread_cpu_seconds();
@@ -45,12 +54,15 @@ double microseconds(Work&& work) {
 void report(Precision precision) {
   Simulation sim(hanging_block(precision));
   std::vector<double> ordinary;
+  long faults = 0;
   std::vector<std::vector<std::uint8_t>> snapshots;  // before each step
   std::size_t worst = 0;
   std::uint32_t most = 0;
   for (std::size_t step = 0; step < kSteps; ++step) {
     snapshots.push_back(sim.snapshot());
+    const long faults_before = page_faults();
     ordinary.push_back(microseconds([&] { sim.step({}); }));
+    faults += page_faults() - faults_before;
     if (sim.info().new_cuts > most) most = sim.info().new_cuts, worst = step;
   }
   std::vector<double> burst, labelling;
@@ -64,9 +76,9 @@ void report(Precision precision) {
   }
   std::printf(
       "%s: %zu springs; ordinary step %.1f us, step with %u cuts %.1f us, one labelling %.1f us: %.2f of 2 steps + "
-      "labelling\n",
+      "labelling; %ld page faults in %zu steps\n",
       precision == Precision::float32 ? "float32" : "float64", sim.mesh().springs.size(), median(ordinary), most,
-      median(burst), median(labelling), median(burst) / (2 * median(ordinary) + median(labelling)));
+      median(burst), median(labelling), median(burst) / (2 * median(ordinary) + median(labelling)), faults, kSteps);
 }
 
 }  // namespace

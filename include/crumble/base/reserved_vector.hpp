@@ -1,5 +1,6 @@
 // A vector whose memory is taken once: copies keep the capacity, so a copied simulation still never allocates in a
-// step.
+// step. The system gives a page when it is first written to; reserve() writes to all of them, so that no step has to
+// wait for one.
 #pragma once
 
 #include <vector>
@@ -13,11 +14,18 @@ class ReservedVector : public std::vector<T> {
   ReservedVector(const ReservedVector& other) : std::vector<T>() { *this = other; }
   ReservedVector(ReservedVector&&) noexcept = default;
   ReservedVector& operator=(const ReservedVector& other) {
-    this->reserve(other.capacity());
+    reserve(other.capacity());
     this->assign(other.begin(), other.end());
     return *this;
   }
   ReservedVector& operator=(ReservedVector&&) noexcept = default;
+
+  /// Of an empty vector, or of one that has as much already.
+  void reserve(std::size_t count) {
+    if (count <= this->capacity()) return;
+    this->resize(count);
+    this->clear();
+  }
 };
 
 }  // namespace crumble
