@@ -1,5 +1,6 @@
 # What an installation holds: the C API (crumble::crumble, crumble::crumble_static), the C++ library (crumble::core), and how
-# CMake and pkg-config find them. The export sets are apart because only crumble::core needs Eigen.
+# CMake and pkg-config find them. The export sets are apart because only crumble::core needs Eigen. The archives,
+# crumble_static and a static core, hand ccd and fcl on to who links them.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crumble)
 

@@ -2,11 +2,11 @@
 # Debian packages that the project needs, and a way to have them. Sourced by scripts/demo, scripts/test and scripts/lint.
 
 # The library, the command line, and the pictures that it draws off screen.
-build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev nlohmann-json3-dev libcli11-dev
-  libepoxy-dev libegl1 libgl1-mesa-dri libstb-dev libtinygltf-dev libpugixml-dev gnuplot-nox)
+build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev libccd-dev libfcl-dev nlohmann-json3-dev
+  libcli11-dev libepoxy-dev libegl1 libgl1-mesa-dri libstb-dev libtinygltf-dev libpugixml-dev gnuplot-nox)
 # Beside these: test and benchmark frameworks, libraries that results are compared with, a second compiler and its
 # formatter.
-test_packages=(ccache libgtest-dev libbenchmark-dev libbullet-dev libccd-dev libfcl-dev libassimp-dev clang clang-format)
+test_packages=(ccache libgtest-dev libbenchmark-dev libbullet-dev libassimp-dev clang clang-format)
 lint_packages=(clang-tidy)
 # For the kernels of other processors: a compiler and something that runs what it makes.
 aarch64_packages=(g++-aarch64-linux-gnu qemu-user)

@@ -111,6 +111,35 @@ double inscribed_radius(const ConvexPolyhedron& body) {
   return -greatest_plane_distance(body, center, nearest);
 }
 
+// In a vertex the ball that fits best rolls along the axis whose greatest angle with the normals round it is least: the
+// center of the smallest cap that holds them (Badoiu and Clarkson 2003: toward the farthest one, by ever less). An edge
+// ends in vertices that are as sharp or sharper.
+double sharpest_sine(const ConvexPolyhedron& body, const std::vector<std::size_t>& plane_of) {
+  constexpr int kTurns = 200;
+  std::vector<std::vector<std::size_t>> planes_at(body.vertices.size());
+  for (std::size_t t = 0; t < plane_of.size(); ++t) {
+    for (const std::uint32_t v : body.surface.triangles[t]) planes_at[v].push_back(plane_of[t]);
+  }
+  double sharpest = 1;
+  for (const std::vector<std::size_t>& planes : planes_at) {
+    if (planes.empty()) continue;
+    Vec3 center = body.planes[planes[0]].normal;
+    double sine = 0;
+    for (int turn = 2; turn <= kTurns; ++turn) {
+      const auto along = [&](std::size_t plane) { return dot(body.planes[plane].normal, center); };
+      std::size_t farthest = planes[0];
+      for (const std::size_t plane : planes) {
+        if (along(plane) < along(farthest)) farthest = plane;
+      }
+      const double length = norm(center);
+      if (length > 0) sine = std::max(sine, along(farthest) / length);
+      center += (body.planes[farthest].normal - center) / turn;
+    }
+    sharpest = std::min(sharpest, sine);
+  }
+  return sharpest;
+}
+
 }  // namespace
 
 // Four lanes as two vectors of GCC's and Clang's own kind: the loop over plain arrays they turn into jumps, one for
@@ -188,6 +217,7 @@ ConvexPolyhedron make_convex(const TriangleMesh& mesh) {
   body.faces = face_table(body.planes, mesh, plane_of);
   check_convex(body, size);
   body.half_thickness = inscribed_radius(body);
+  body.edge_sine = sharpest_sine(body, plane_of);
   return body;
 }
 

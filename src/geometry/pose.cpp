@@ -34,6 +34,10 @@ Quat multiply(const Quat& a, const Quat& b) {
           ((a.w() * b.z() + a.z() * b.w()) + a.x() * b.y()) - a.y() * b.x()};
 }
 
+Pose compose(const Pose& a, const Pose& b) {
+  return {a.position + rotate(rotation_matrix(a.orientation), b.position), multiply(a.orientation, b.orientation)};
+}
+
 bool is_valid(const Pose& pose) {
   const double length = std::sqrt(squared_length(pose.orientation));
   return is_finite(pose.position) && std::abs(length - 1) <= 1e-3;

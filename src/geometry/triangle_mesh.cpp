@@ -28,21 +28,27 @@ std::size_t count_fans(const std::vector<std::array<std::uint32_t, 2>>& spokes) 
 
 }  // namespace
 
-Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a;
   const double d1 = dot(ab, p - a), d2 = dot(ac, p - a);
-  if (d1 <= 0 && d2 <= 0) return a;
+  if (d1 <= 0 && d2 <= 0) return {a, TriangleFeature::a};
   const double d3 = dot(ab, p - b), d4 = dot(ac, p - b);
-  if (d3 >= 0 && d4 <= d3) return b;
+  if (d3 >= 0 && d4 <= d3) return {b, TriangleFeature::b};
   const double d5 = dot(ab, p - c), d6 = dot(ac, p - c);
-  if (d6 >= 0 && d5 <= d6) return c;
+  if (d6 >= 0 && d5 <= d6) return {c, TriangleFeature::c};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + d1 / (d1 - d3) * ab, TriangleFeature::ab};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, TriangleFeature::ca};
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  return a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), TriangleFeature::bc};
+  }
+  return {a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac, TriangleFeature::face};
+}
+
+Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return nearest_on_triangle(p, a, b, c).point;
 }
 
 double volume(const TriangleMesh& mesh) {

@@ -67,8 +67,9 @@ case $case_name in
     ;;
   pkg_config_static)
     find_pkg_config
+    # the archive of ours alone: there are none of FCL and libccd
     # shellcheck disable=SC2046
-    compile_c "$work/pkg_config_static" -static $(pkg-config --static --cflags --libs crumble)
+    compile_c "$work/pkg_config_static" $(pkg-config --static --cflags --libs crumble | sed 's/-lcrumble/-l:libcrumble.a/')
     run "$work/pkg_config_static"
     ;;
   *)

@@ -32,6 +32,7 @@ struct ConvexPolyhedron {
   TriangleMesh surface;       // for drawing and for other libraries; same vertices
   double half_thickness = 0;  // radius of the largest sphere about the vertex mean that fits inside
   FaceTable faces;
+  double edge_sine = 1;  // see SolidModel::edge_sine()
 };
 
 /// Greatest n . x - offset over the planes: negative inside, where its magnitude is the depth under the nearest

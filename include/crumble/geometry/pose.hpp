@@ -18,6 +18,9 @@ Quat axis_angle(const Vec3& axis, double angle);
 /// Hamilton product: first b, then a.
 Quat multiply(const Quat& a, const Quat& b);
 
+/// First b, then a: the pose in the scene of what has pose b in the frame of a.
+Pose compose(const Pose& a, const Pose& b);
+
 /// R v and R^T v, sums in written order.
 inline Vec3 rotate(const Mat3& r, const Vec3& v) {
   return {(r(0, 0) * v.x() + r(0, 1) * v.y()) + r(0, 2) * v.z(), (r(1, 0) * v.x() + r(1, 1) * v.y()) + r(1, 2) * v.z(),

@@ -16,7 +16,14 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
+/// What of a triangle a b c a point lies on.
+enum class TriangleFeature : std::uint8_t { a = 0, b = 1, c = 2, ab = 3, bc = 4, ca = 5, face = 6 };
+struct TrianglePoint {
+  Vec3 point;
+  TriangleFeature feature;
+};
 /// Nearest point of the triangle a b c to p (Ericson, Real-Time Collision Detection, 5.1.5).
+TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Enclosed volume by the divergence theorem, m^3; negative when the triangles face inward.
