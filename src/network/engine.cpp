@@ -7,6 +7,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/text.hpp"
+#include "crumble/base/transcendental.hpp"
 
 namespace crumble {
 namespace {
@@ -41,6 +42,10 @@ Engine<Real>::Engine(const SpringNetwork& network, const StepCoefficients& coeff
   overlong_of_.resize(layout_->partitions.size());
   lost_of_.assign(layout_->partitions.size(), kNone);
   held_.resize(node_count());
+  frames_ = RigidFrames(network.masses);
+  is_held_.resize(node_count());
+  loose_slots_.resize(2 * node_count());
+  loose_forces_.resize(2 * node_count());
   if (layout_->partitions.size() > 1) {
     if (settings.host_threads.run != nullptr) team_ = std::make_shared<Team>(settings.host_threads);
     if (!team_ && settings.threads > 1) team_ = std::make_shared<Team>(settings.threads);
@@ -59,6 +64,12 @@ std::shared_ptr<const typename Engine<Real>::Fixed> Engine<Real>::make_fixed(con
   fixed->stiffnesses = network.stiffnesses;
   fixed->rest_lengths = network.rest_lengths;
   fixed->coefficients = coefficients;
+  fixed->masses = network.masses;
+  fixed->spring_damping = network.spring_damping;
+  for (std::size_t i = 0; i < network.node_count(); ++i) {
+    const double loss = network.fixed[i] ? 0 : network.spring_damping * coefficients.substep / network.masses[i];
+    fixed->damped.push_back(exp_exact(-loss));
+  }
   fixed->give = settings.length_limit > 0 ? static_cast<Real>(1 - 1 / settings.length_limit)
                                           : std::numeric_limits<Real>::infinity();
   fixed->cut_share = static_cast<Real>(settings.cut_share);
@@ -114,9 +125,10 @@ void Engine<Real>::reset() noexcept {
   refresh();
 }
 
-// All springs unbroken, no node frozen.
+// All springs unbroken, no node frozen, no loose body.
 template <class Real>
 void Engine<Real>::mend() noexcept {
+  set_loose({});
   gains_ = fixed_->gains;
   for (std::uint32_t s = 0; s < fixed_->stiffnesses.size(); ++s) set_share(s, 1);
   plain_ = fixed_->plain;
@@ -128,6 +140,7 @@ void Engine<Real>::refresh() noexcept {
   start_forces();
   overlong_count_ = 0;
   std::fill(lost_of_.begin(), lost_of_.end(), kNone);
+  lost_from_frame_ = kNone;
   for (const Partition& p : layout_->partitions) {
     kernel_of<Real>(*kernels_).pack(p.own_groups, std::as_const(at_).from(), packed_.data());
   }
@@ -178,7 +191,11 @@ Vec3 Engine<Real>::velocity(std::uint32_t node) const noexcept {
 
 template <class Real>
 void Engine<Real>::place(std::uint32_t node, const Vec3& position, const Vec3& velocity) noexcept {
-  const std::uint32_t slot = layout_->slot_of[node];
+  place_slot(layout_->slot_of[node], position, velocity);
+}
+
+template <class Real>
+void Engine<Real>::place_slot(std::uint32_t slot, const Vec3& position, const Vec3& velocity) noexcept {
   store(slot, position, velocity);
   widen(slot);
   Real* packed = packed_.data() + 4 * std::size_t{slot};
@@ -229,7 +246,14 @@ std::optional<std::uint32_t> Engine<Real>::lost_node() const noexcept {
   for (const std::uint32_t slot : lost_of_) {
     if (slot != kNone) return layout_->node_of[slot];
   }
+  if (lost_from_frame_ != kNone) return layout_->node_of[lost_from_frame_];
   return {};
+}
+
+template <class Real>
+void Engine<Real>::push(std::uint32_t node, const Vec3& force) noexcept {
+  const std::uint32_t slot = layout_->slot_of[node], shift = layout_->shift(partition_of(slot));
+  for (std::size_t a = 0; a < 3; ++a) force_.axis(a)[slot + shift] += static_cast<Real>(force[static_cast<int>(a)]);
 }
 
 template <class Real>
@@ -240,6 +264,16 @@ void Engine<Real>::read_positions(std::uint32_t first, VecSpan positions) const 
 template <class Real>
 void Engine<Real>::read_velocities(VecSpan velocities) const noexcept {
   for (std::size_t slot = 0; slot < node_count(); ++slot) velocities.set(layout_->node_of[slot], velocity_.get(slot));
+}
+
+template <class Real>
+void Engine<Real>::read_nodes(std::span<const std::uint32_t> nodes, VecSpan positions,
+                              VecSpan velocities) const noexcept {
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::uint32_t slot = layout_->slot_of[nodes[k]];
+    positions.set(k, load(slot));
+    velocities.set(k, velocity_.get(slot));
+  }
 }
 
 template <class Real>

@@ -8,6 +8,7 @@
 #include "network/aligned_vector.hpp"
 #include "network/kernels.hpp"
 #include "network/layout.hpp"
+#include "network/rigid_frames.hpp"
 
 namespace crumble {
 
@@ -49,9 +50,12 @@ class Engine final : public NetworkSolver {
   std::span<const std::uint32_t> behind(const Plane& plane) noexcept override;
 
   void set_external(VecView forces) noexcept override;
+  void push(std::uint32_t node, const Vec3& force) noexcept override;
+  void set_loose(const NodeGroups& groups) noexcept override;
   void set_share(std::uint32_t spring, double share) noexcept override;
   void set_frozen(std::uint32_t node, bool frozen) noexcept override;
   void solve(std::span<NodeConstraint> constraints) noexcept override;
+  double holder_work() const noexcept override { return holder_work_; }
   std::span<const std::uint32_t> overlong() const noexcept override { return {overlong_.data(), overlong_count_}; }
   void find_overlong(double length_limit) noexcept override;
   std::optional<std::uint32_t> lost_node() const noexcept override;
@@ -59,6 +63,7 @@ class Engine final : public NetworkSolver {
   void read_forces(VecSpan forces) const override;
   void read_positions(std::uint32_t first, VecSpan positions) const noexcept override;
   void read_velocities(VecSpan velocities) const noexcept override;
+  void read_nodes(std::span<const std::uint32_t> nodes, VecSpan positions, VecSpan velocities) const noexcept override;
   void add_to(Hash& hash) const noexcept override;
   void save(ByteWriter& out) const override;
   void load(ByteReader& in) override;
@@ -68,6 +73,7 @@ class Engine final : public NetworkSolver {
  private:
   struct Held {
     Vec3 position, velocity;
+    Vec3 unreported = Vec3::Zero();  // friction that a reaction does not hold, N
   };
   static constexpr bool kHasRest = sizeof(Real) == 4;
 
@@ -82,6 +88,9 @@ class Engine final : public NetworkSolver {
     std::vector<double> stiffnesses, rest_lengths;  // by spring
     std::vector<Vec3> rest_positions;               // by slot
     StepCoefficients coefficients;                  // by node
+    std::vector<double> masses;                     // by node
+    double spring_damping = 0;                      // N s/m
+    std::vector<double> damped;                     // by node: e^(-spring_damping tau / m), 1 for fixed ones
     Gains gains;
     std::vector<Way<Real>> ways;
     std::vector<std::uint8_t> present;  // by block of lanes
@@ -101,12 +110,25 @@ class Engine final : public NetworkSolver {
   void start_forces() noexcept;
   void refresh() noexcept;
   void widen(std::size_t slot) noexcept;
+  void place_slot(std::uint32_t slot, const Vec3& position, const Vec3& velocity) noexcept;
   std::span<const std::uint32_t> nodes_of_found(std::size_t count) noexcept;
 
   void in_partitions(void (Engine::*task)(std::uint32_t) noexcept) noexcept;
   void sum_forces(std::uint32_t partition) noexcept;
   void join_forces(std::uint32_t partition) noexcept;
   void move(std::uint32_t partition) noexcept;
+  void join_and_move(std::uint32_t partition) noexcept;
+  std::uint32_t partition_of(std::uint32_t slot) const noexcept;
+  void hold(NodeConstraint& held, Held& next) noexcept;
+  void hold_loose(NodeConstraint& held, const Vec3& force, Held& next) noexcept;
+  bool is_loose(std::uint32_t node) const noexcept { return frames_.place_of(node) != RigidFrames::kNoPlace; }
+  void damp_springs(std::span<const NodeConstraint> constraints) noexcept;
+  void read_frames() noexcept;
+  void find_frames() noexcept;
+  void keep_in_world() noexcept;
+  void enter_frames() noexcept;
+  void leave_frames() noexcept;
+  void slide_along(const NodeConstraint& held, Held& next) noexcept;
   Vec3 force_at(std::uint32_t slot) const noexcept;
   std::size_t first_overlong(std::uint32_t partition) const noexcept;
   void collect_overlong() noexcept;
@@ -130,6 +152,11 @@ class Engine final : public NetworkSolver {
   std::size_t overlong_count_ = 0;
   std::vector<std::uint32_t> lost_of_;  // by partition
   std::vector<Held> held_;
+  RigidFrames frames_;
+  std::vector<std::uint32_t> loose_slots_, loose_forces_;  // by place: slot, and where its force is
+  double holder_work_ = 0;
+  std::vector<std::uint8_t> is_held_;      // by node, for damp_springs()
+  std::uint32_t lost_from_frame_ = kNone;  // slot
 };
 
 }  // namespace crumble

@@ -8,6 +8,10 @@
 namespace crumble {
 
 void filter_contact(NodeConstraint& c, const Vec3& force) noexcept {
+  if (c.state == ContactState::attached) {
+    c.reaction = -force;
+    return;
+  }
   const double pressing = -dot(force, c.normal);
   if (!(pressing > 0)) {
     c.state = ContactState::released;
@@ -59,26 +63,37 @@ void oppose_sliding(const StepCoefficients& c, NodeConstraint& held, const Vec3&
 
 template <class Real>
 void Engine<Real>::solve(std::span<NodeConstraint> constraints) noexcept {
+  if (fixed_->spring_damping > 0) damp_springs(constraints);
   in_partitions(&Engine::sum_forces);  // Eq (5)
   collect_overlong();
 
-  // where the held nodes go is worked out before the others move, and written after
-  const StepCoefficients& coefficients = fixed_->coefficients;
-  for (std::size_t k = 0; k < constraints.size(); ++k) {
-    NodeConstraint& c = constraints[k];
-    const Vec3 force = force_at(layout_->slot_of[c.node]);
-    filter_contact(c, force);
-    held_[k] = {position(c.node), velocity(c.node)};
-    if (c.state == ContactState::slip) oppose_sliding(coefficients, c, force, held_[k].velocity);
-    if (c.state == ContactState::slip) slide(coefficients, c, force, held_[k].position, held_[k].velocity);
-  }
+  const bool loose = !frames_.empty();
+  holder_work_ = 0;
+  if (loose) in_partitions(&Engine::join_forces), find_frames();
 
-  in_partitions(&Engine::move);  // Eqs (3) and (4)
+  // where the held nodes go is worked out before the others move, and written after
+  for (std::size_t k = 0; k < constraints.size(); ++k) hold(constraints[k], held_[k]);
+
+  if (loose) enter_frames();
+  in_partitions(loose ? &Engine::move : &Engine::join_and_move);  // Eqs (3) and (4)
+  if (loose) leave_frames();
   for (std::size_t k = 0; k < constraints.size(); ++k) {
-    if (constraints[k].state != ContactState::released) {
-      place(constraints[k].node, held_[k].position, held_[k].velocity);
-    }
+    const NodeConstraint& c = constraints[k];
+    if (c.state == ContactState::released) continue;
+    if (c.state == ContactState::slip && is_loose(c.node)) slide_along(c, held_[k]);
+    place(c.node, held_[k].position, held_[k].velocity);
   }
+}
+
+template <class Real>
+void Engine<Real>::hold(NodeConstraint& c, Held& next) noexcept {
+  const StepCoefficients& coefficients = fixed_->coefficients;
+  const Vec3 force = force_at(layout_->slot_of[c.node]);
+  next = {position(c.node), velocity(c.node)};
+  if (is_loose(c.node)) return hold_loose(c, force, next);
+  filter_contact(c, force);
+  if (c.state == ContactState::slip) oppose_sliding(coefficients, c, force, next.velocity);
+  if (c.state == ContactState::slip) slide(coefficients, c, force, next.position, next.velocity);
 }
 
 template <class Real>
@@ -183,11 +198,17 @@ void Engine<Real>::join_forces(std::uint32_t p) noexcept {
   }
 }
 
-// The sum that join_forces will come to.
 template <class Real>
-Vec3 Engine<Real>::force_at(std::uint32_t slot) const noexcept {
+std::uint32_t Engine<Real>::partition_of(std::uint32_t slot) const noexcept {
   std::uint32_t p = 0;
   while (layout_->partitions[p].end <= slot) ++p;
+  return p;
+}
+
+// The sum that join_forces will come to, or has come to.
+template <class Real>
+Vec3 Engine<Real>::force_at(std::uint32_t slot) const noexcept {
+  const std::uint32_t p = partition_of(slot);
   const auto sum = [&](std::size_t axis) {
     const auto of = [&](std::uint32_t partition) {
       const std::size_t at = slot + layout_->shift(partition);
@@ -200,8 +221,13 @@ Vec3 Engine<Real>::force_at(std::uint32_t slot) const noexcept {
 }
 
 template <class Real>
-void Engine<Real>::move(std::uint32_t p) noexcept {
+void Engine<Real>::join_and_move(std::uint32_t p) noexcept {
   join_forces(p);
+  move(p);
+}
+
+template <class Real>
+void Engine<Real>::move(std::uint32_t p) noexcept {
   const Partition& part = layout_->partitions[p];
   const auto& kernel = kernel_of<Real>(*kernels_);
   lost_of_[p] = kernel.move({part.first, part.end, at_.from(), rest_of_at_.from(), velocity_.from(),

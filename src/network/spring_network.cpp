@@ -18,6 +18,7 @@ void check(const Material& material) {
     throw Error(Code::out_of_range,
                 "material.damping_ratio must not be negative, is " + to_text(material.damping_ratio));
   }
+  require_in_range("material.spring_damping", material.spring_damping, 0, 1e9);
   require_finite("material.length_limit", material.length_limit);
   if (material.length_limit <= 1) {
     throw Error(Code::out_of_range, "material.length_limit must be above 1 (else the body breaks at rest), is " +
@@ -57,6 +58,7 @@ SpringNetwork make_network(const TetMesh& mesh, const Material& material, MassRu
   network.springs = mesh.springs;
   for (const auto& [i, j] : mesh.springs) network.rest_lengths.push_back(norm(mesh.positions[j] - mesh.positions[i]));
   network.stiffnesses.assign(mesh.springs.size(), material.stiffness);
+  network.spring_damping = material.spring_damping;
   share_mass(mesh, material.mass, rule, network.masses);
   set_drags(material, network);
   network.fixed.assign(mesh.node_count(), 0);

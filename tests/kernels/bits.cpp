@@ -26,9 +26,9 @@ struct Golden {
 };
 // This program prints them when they do not fit. They change with the order of sums, that is with the layout.
 constexpr Golden kGolden[] = {
-    {"rows", 0x0b229a64f7e00767, 0x83749e8d9631c31a},         {"shuffled", 0xc90478342307fb40, 0xb2fe3def1749cecc},
-    {"tangle", 0xaef6041c4ac2c1a4, 0x3a2b3fc794cf3c49},       {"large_rows", 0x731b02a52d457c3e, 0xe7e19592b70665bb},
-    {"large_tangle", 0xa7006067175a2cc8, 0x198eb3832a4b1235},
+    {"rows", 0x807b28901dc88c9e, 0x23d6daa16d1d54bc},         {"shuffled", 0x6a9331e994011a7d, 0xf55907d2b8f338b4},
+    {"tangle", 0xa9933bdda8c10360, 0xc54424f4f543e3e7},       {"large_rows", 0xff4136d320ff4df4, 0x06e83af41f830a39},
+    {"large_tangle", 0x7c43084ce9e000c4, 0xda2ef4b9ff8553a7},
 };
 
 struct Body {
@@ -110,8 +110,11 @@ class Ordeal {
   std::uint64_t run() {
     for (int step = 0; step < body_.steps; ++step) {
       if (step % 16 == 0) shake();
+      if (step == body_.steps / 4) let_loose();
       if (step == body_.steps / 2) external_.x[external_.size() / 2] = 1e12;  // out of the world
       solver_->set_external(external_);
+      const auto pushed = static_cast<std::uint32_t>(random_.below(body_.at.size()));
+      solver_->push(pushed, random_vector(random_, 0.1));
       fade();
       hold();
       solver_->solve(held_);
@@ -124,13 +127,24 @@ class Ordeal {
 
   // All parts of the kernels had work to do.
   bool was_worth_it() const {
-    return cut_ > 100 && cut_ < body_.network.spring_count() / 2 && lost_ > 0 && held_in_all_ > 100;
+    return cut_ > 100 && cut_ < 9 * body_.network.spring_count() / 10 && lost_ > 0 && held_in_all_ > 100;
   }
   LayoutReport layout() const { return solver_->layout(); }
 
  private:
   void shake() {
     for (std::size_t i = 0; i < external_.size(); ++i) external_.set(i, random_vector(random_, 0.05));
+  }
+
+  // A third of the nodes, five and one, but no fixed one.
+  void let_loose() {
+    const auto third = static_cast<std::uint32_t>(body_.at.size() / 3);
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t node = 30; nodes.size() < third + 6; ++node) {
+      if (!body_.network.fixed[node]) nodes.push_back(node);
+    }
+    const std::vector<std::uint32_t> first{0, third, third + 5, third + 6};
+    solver_->set_loose({first, nodes});
   }
 
   // A spring found too long has half its stiffness for a step and then none.

@@ -19,7 +19,7 @@ double reference_energy(const SpringNetwork& network) noexcept;
 struct EnergyLedger {
   double stored = 0;         // springs + kinetic, now
   double tool_work = 0;      // done by tools and walls on the body: projection and reaction
-  double external_work = 0;  // gravity
+  double external_work = 0;  // gravity, node forces, and fragments that push each other
   double dissipated = 0;     // by drag
   double cut = 0;            // left with the cut springs
   /// Greatest growth of the solve stage alone in one substep, over stored + reference energy: the audit of the theorem.

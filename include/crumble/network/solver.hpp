@@ -48,6 +48,12 @@ struct LayoutReport {
   bool sorted = false;           // nodes were renumbered, since their order was not a good one
 };
 
+/// Disjoint groups of nodes: those of group g are nodes[first[g]] to nodes[first[g + 1] - 1].
+struct NodeGroups {
+  std::span<const std::uint32_t> first;  // of each group, and the end; empty when there is none
+  std::span<const std::uint32_t> nodes;
+};
+
 class NetworkSolver : public NodeSource {
  public:
   /// At rest, unbroken, without external force. Copies what it needs of its arguments. Throws Error: out_of_range or
@@ -62,6 +68,12 @@ class NetworkSolver : public NodeSource {
   /// The spring's stiffness from now on is `share` of its unbroken one: 1 intact, 0 gone, between while it fades.
   virtual void set_share(std::uint32_t spring, double share) noexcept = 0;
 
+  /// Force on one node, N, on top of that, in the next solve() only.
+  virtual void push(std::uint32_t node, const Vec3& force) noexcept = 0;
+  /// Loose bodies: the drag of their nodes acts on what their motion differs by from that of a rigid body. All others
+  /// are braked against the room. No fixed or frozen node may be in a group. Copies.
+  virtual void set_loose(const NodeGroups& groups) noexcept = 0;
+
   /// A frozen node stays where it is, at rest, whatever pulls on it; it must not be held. `place` moves it all the
   /// same.
   virtual void set_frozen(std::uint32_t node, bool frozen) noexcept = 0;
@@ -70,6 +82,9 @@ class NetworkSolver : public NodeSource {
   /// A spring shorter than the root of the smallest normal number pulls nowhere. A node that would leave the world
   /// (1 km, 1 km/s, not a number) stays, see lost_node().
   virtual void solve(std::span<NodeConstraint> constraints) noexcept = 0;
+  /// What the holders of loose bodies' nodes did in the last solve() beyond their reactions, by the drag of these
+  /// nodes, J: for the energy ledger.
+  virtual double holder_work() const noexcept = 0;
   /// Springs with a share of 1 that solve() found longer than the limit where it began, or find_overlong() where they
   /// are now, ascending.
   virtual std::span<const std::uint32_t> overlong() const noexcept = 0;
@@ -83,8 +98,12 @@ class NetworkSolver : public NodeSource {
   /// Of nodes first, first + 1, ... as many as there is room for.
   virtual void read_positions(std::uint32_t first, VecSpan positions) const noexcept = 0;
   virtual void read_velocities(VecSpan velocities) const noexcept = 0;
+  /// Both, of the nodes named.
+  virtual void read_nodes(std::span<const std::uint32_t> nodes, VecSpan positions,
+                          VecSpan velocities) const noexcept = 0;
 
-  /// All bits of positions and velocities; load() also mends all springs and frees frozen nodes. Throws Error(corrupt).
+  /// All bits of positions and velocities; load() also mends all springs, frees frozen nodes and knows no loose bodies.
+  /// Throws Error(corrupt).
   virtual void add_to(Hash& hash) const noexcept = 0;
   virtual void save(ByteWriter& out) const = 0;
   virtual void load(ByteReader& in) = 0;
@@ -94,8 +113,9 @@ class NetworkSolver : public NodeSource {
 };
 
 /// Coulomb's answer for each held node, from the force on it (forces[k] belongs to constraints[k]): released when the
-/// body pulls away, stick, or slip. Writes each constraint's state and reaction. A fresh or sticking node starts to
-/// slip above static_friction times the normal force; a slipping one goes on until dynamic friction holds it.
+/// body pulls away, stick, or slip; an attached node is never released. Writes each constraint's state and reaction. A
+/// fresh or sticking node starts to slip above static_friction times the normal force; a slipping one goes on until
+/// dynamic friction holds it.
 void filter_contact(NodeConstraint& constraint, const Vec3& force) noexcept;
 
 }  // namespace crumble

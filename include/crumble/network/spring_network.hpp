@@ -15,6 +15,7 @@ struct Material {
   double damping_ratio = 30;  // alpha of Eq (2); >= 0
   double length_limit = 1.3;  // l_p of Eq (8): a spring is cut when longer than l_p times its rest length; > 1
   double mass = 0.03;         // of the whole body, kg; > 0
+  double spring_damping = 0;  // of a damper along each spring (paper, Fig 2f), N s/m; >= 0
 };
 
 /// How the body's mass is shared out among its nodes.
@@ -30,6 +31,7 @@ struct SpringNetwork {
   std::vector<double> masses;          // m_i, kg (node_count)
   std::vector<double> drags;           // c_i of Eq (2), N s/m (node_count)
   std::vector<double> stiffness_sums;  // D_i, sum of k over the node's springs, N/m (node_count)
+  double spring_damping = 0;           // of the damper along each spring, N s/m
   std::vector<std::uint8_t> fixed;     // 1: never moves (node_count)
 
   std::size_t node_count() const { return masses.size(); }

@@ -12,14 +12,15 @@ enum class ContactState : std::uint8_t {
   stick = 1,     // held: moves with the tool
   slip = 2,      // slides along the surface under dynamic friction
   released = 3,  // the body pulled away: no force; dropped before the next step
+  attached = 4,  // goes with its holder, whatever pulls on it
 };
 
 struct NodeConstraint {
   std::uint32_t node = 0;
-  std::uint32_t holder = 0;  // index of the tool; kWorldHolder for floor and walls
+  std::uint32_t holder = 0;  // index of the tool, or number of tools + index of the attachment; kWorldHolder: walls
   ContactState state = ContactState::fresh;
   Vec3 point = Vec3::Zero();     // where the node is held, metres
-  Vec3 normal = Vec3::Zero();    // unit, from the holder's surface into the body
+  Vec3 normal = Vec3::Zero();    // unit, from the holder's surface into the body; zero of an attached node
   Vec3 velocity = Vec3::Zero();  // of the holder's surface at the node, m/s
   double static_friction = 0;    // Coulomb, dimensionless
   double dynamic_friction = 0;
