@@ -17,12 +17,12 @@
 
 #include <algorithm>
 
-#include "spring_graph.hpp"
+#include "fragment_graph.hpp"
 
 namespace crumble {
 
 FragmentTracker::FragmentTracker(std::size_t node_count, std::span<const Edge> springs)
-    : graph_(std::make_shared<SpringGraph>(node_count, springs)),
+    : graph_(std::make_shared<FragmentGraph>(node_count, springs)),
       labels_(node_count),
       cut_(springs.size()),
       gone_(springs.size()),
@@ -34,6 +34,10 @@ FragmentTracker::FragmentTracker(std::size_t node_count, std::span<const Edge> s
   splits_.reserve(node_count);
   groups_.reserve(node_count);
   reset();
+}
+
+const SpringGraph& FragmentTracker::graph() const noexcept {
+  return *graph_;
 }
 
 void FragmentTracker::reset() noexcept {

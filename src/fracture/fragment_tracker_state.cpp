@@ -4,7 +4,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/fracture/fragment_tracker.hpp"
-#include "spring_graph.hpp"
+#include "fragment_graph.hpp"
 
 namespace crumble {
 namespace {

@@ -15,6 +15,7 @@
 
 namespace crumble {
 
+struct FragmentGraph;
 struct SpringGraph;
 
 /// One fragment's line in the family book. A fragment's nodes become fewer as others come off it.
@@ -71,6 +72,9 @@ class FragmentTracker {
   /// Back to the whole body.
   void reset() noexcept;
 
+  /// The springs of the unbroken body. Valid as long as this tracker or a copy of it.
+  const SpringGraph& graph() const noexcept;
+
   /// load() throws Error(corrupt) for what save() cannot have written for this body, and then changes nothing.
   void save(ByteWriter& out) const;
   void load(ByteReader& in);
@@ -115,7 +119,7 @@ class FragmentTracker {
   void load_labels(ByteReader& in);
   void resume_search(std::uint64_t search_end, std::uint32_t expanded);
 
-  std::shared_ptr<const SpringGraph> graph_;  // immutable
+  std::shared_ptr<const FragmentGraph> graph_;  // immutable
 
   // What is saved and hashed.
   ReservedVector<std::uint32_t> log_;  // springs in the order of their cuts

@@ -1,10 +1,9 @@
-#include "spring_graph.hpp"
+#include "crumble/tetmesh/spring_graph.hpp"
 
 #include <numeric>
 #include <string>
 
 #include "crumble/base/error.hpp"
-#include "crumble/fracture/fragments.hpp"
 
 namespace crumble {
 namespace {
@@ -25,7 +24,7 @@ void require_node(std::size_t spring, std::uint32_t node, std::size_t node_count
 
 SpringGraph::SpringGraph(std::size_t node_count, std::span<const Edge> given_springs)
     : springs(given_springs.begin(), given_springs.end()) {
-  require_below("node_count", node_count, kNoFragment);
+  require_below("node_count", node_count, (std::size_t{1} << 32) - 1);
   require_below("spring_count", springs.size(), std::size_t{1} << 31);
   starts.resize(node_count + 1);
   neighbors.resize(2 * springs.size());
@@ -43,11 +42,6 @@ SpringGraph::SpringGraph(std::size_t node_count, std::span<const Edge> given_spr
     neighbors[--starts[a]] = b, springs_by_node[starts[a]] = s;
     neighbors[--starts[b]] = a, springs_by_node[starts[b]] = s;
   }
-
-  FragmentLabeler labeler(node_count, springs);
-  part_sizes.resize(labeler.label(std::vector<std::uint8_t>(springs.size(), 1)));
-  parts.assign(labeler.labels().begin(), labeler.labels().end());
-  for (const std::uint32_t part : parts) ++part_sizes[part];
 }
 
 }  // namespace crumble

@@ -1,4 +1,4 @@
-// The springs as a graph: what hangs on each node. Immutable, shared by all copies of a tracker.
+// The springs as a graph: what hangs on each node. Immutable.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,6 @@ struct SpringGraph {
   std::vector<Edge> springs;
   std::vector<std::uint32_t> starts;                      // of each node's neighbors (node_count + 1)
   std::vector<std::uint32_t> neighbors, springs_by_node;  // by node, then by spring
-  std::vector<std::uint32_t> parts;       // connected component of each node, numbered by least node (node_count)
-  std::vector<std::uint32_t> part_sizes;  // nodes of each
 };
 
 }  // namespace crumble
