@@ -7,10 +7,10 @@
 namespace crumble {
 namespace {
 
-constexpr std::array kAllKinds = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::phantom,
-                                  DeviceKind::custom};
+constexpr std::array kAllKinds = {DeviceKind::null,    DeviceKind::press,  DeviceKind::replay,
+                                  DeviceKind::phantom, DeviceKind::custom, DeviceKind::path};
 // A custom device is handed over as an object; there is nothing to open.
-constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay};
+constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::path};
 
 std::string list(std::span<const DeviceKind> kinds) {
   std::string text;
@@ -36,6 +36,8 @@ const char* to_string(DeviceKind kind) {
       return "phantom";
     case DeviceKind::custom:
       return "custom";
+    case DeviceKind::path:
+      return "path";
   }
   return "unknown";
 }
@@ -53,6 +55,8 @@ std::unique_ptr<Device> open_device(const DeviceDef& def) {
       return open_null(def.rest, def.tick);
     case DeviceKind::press:
       return open_press(def.press, def.tick);
+    case DeviceKind::path:
+      return open_path(def.path, def.tick);
     case DeviceKind::replay:
       return open_replay(read_trajectory(def.trajectory), def.replay, def.tick);
     case DeviceKind::phantom:

@@ -9,6 +9,7 @@ namespace {
 
 TEST(Open, OpensEveryKindThatItLists) {
   DeviceDef def;
+  def.path.points = {{.time = 1}};
   def.trajectory = std::string(CRUMBLE_SOURCE_DIR) + "/examples/trajectories/press_1mm_s.ctraj";
   for (const DeviceKind kind : available_devices()) {
     def.kind = kind;
@@ -25,18 +26,18 @@ TEST(Open, RefusesTheRestWithTheListOfWhatThereIs) {
     const Error error = error_of([&] { open_device({.kind = kind}); });
     EXPECT_EQ(error.code(), Code::unsupported);
     EXPECT_TRUE(mentions(error, to_string(kind))) << error.what();
-    EXPECT_TRUE(mentions(error, "null, press, replay")) << error.what();
+    EXPECT_TRUE(mentions(error, "null, press, replay, path")) << error.what();
   }
   EXPECT_EQ(error_of([] { open_device({.kind = DeviceKind::replay, .trajectory = "none.ctraj"}); }).code(), Code::io);
 }
 
 TEST(Open, NamesComeBack) {
-  for (const char* name : {"null", "press", "replay", "phantom", "custom"})
+  for (const char* name : {"null", "press", "replay", "phantom", "custom", "path"})
     EXPECT_STREQ(to_string(device_kind(name)), name);
   const Error error = error_of([] { device_kind("mouse"); });
   EXPECT_EQ(error.code(), Code::unsupported);
   EXPECT_TRUE(mentions(error, "mouse"));
-  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom")) << error.what();
+  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom, path")) << error.what();
 }
 
 }  // namespace

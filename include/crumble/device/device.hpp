@@ -20,6 +20,7 @@ enum class DeviceKind : std::uint8_t {
   replay = 2,   // a trajectory from a file
   phantom = 3,  // 3D Systems PHANToM / Touch through HDAPI: see available_devices() for whether this build has it
   custom = 4,   // a class of the user's own that implements Device
+  path = 5,     // scripted moves and turns
 };
 
 /// What a device senses, or a trajectory holds: bits of a mask.

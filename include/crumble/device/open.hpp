@@ -16,6 +16,7 @@ struct DeviceDef {
   double tick = 1e-3;           // s, > 0: period of the step-locked kinds
   Pose rest = {};               // kind null
   PressOptions press = {};      // kind press
+  PathOptions path = {};        // kind path
   ReplayOptions replay = {};    // kind replay
   std::string trajectory = {};  // kind replay: path of a .ctraj file
 };

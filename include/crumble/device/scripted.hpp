@@ -1,7 +1,8 @@
-// Devices that need no hardware and no file. Both are step-locked: read k (from 0) gives time k * tick.
+// Devices that need no hardware and no file. All are step-locked: read k (from 0) gives time k * tick.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "crumble/device/device.hpp"
 
@@ -22,5 +23,22 @@ struct PressOptions {
 
 /// Throws Error naming the field of the option (bad_pose, invalid_value, out_of_range), or the tick.
 std::unique_ptr<Device> open_press(const PressOptions& options, double tick);
+
+/// Where a path comes by. A turn by several revolutions is a turn by that many.
+struct PathPoint {
+  double time = 0;           // s, from 0 on, increasing from point to point
+  Vec3 move = Vec3::Zero();  // m, from where it started
+  Vec3 turn = Vec3::Zero();  // unit axis times radians, from how it stood when it started, about its own origin
+};
+
+/// From `start` (at time 0) straight to each point, at constant speed; turns about one axis are turned at constant
+/// speed too. Then finished. A point with the move and turn of the one before holds still.
+struct PathOptions {
+  Pose start = {};                // m, device frame
+  std::vector<PathPoint> points;  // one at least
+};
+
+/// Throws Error naming the field of the option (bad_pose, empty, invalid_value, out_of_range), or the tick.
+std::unique_ptr<Device> open_path(const PathOptions& options, double tick);
 
 }  // namespace crumble
