@@ -85,7 +85,7 @@ struct Press {
 
 Press press_cube() {
   Scene scene = load_scene("tofu_cube", Preset::standard);
-  return {std::move(scene.def), scene.start, 0.01, 400, 1600};
+  return {std::move(scene.def), scene.motions[0].start, 0.01, 400, 1600};
 }
 
 Press press_lattice(std::size_t springs) {

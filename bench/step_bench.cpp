@@ -17,8 +17,8 @@ constexpr std::size_t kWindow = 1000;  // steps that are measured again and agai
 class Press {
  public:
   explicit Press(const Scene& scene) : sim_(scene.def) {
-    const auto device = open_press(scene.press, scene.def.step.tau);
-    const auto warm_up = static_cast<std::size_t>(scene.top / 3 / scene.press.speed / scene.def.step.tau);
+    const auto device = open_press(scene.motions[0].press, scene.def.step.tau);
+    const auto warm_up = static_cast<std::size_t>(scene.top / 3 / scene.motions[0].press.speed / scene.def.step.tau);
     DeviceSample sample;
     for (std::size_t step = 0; step < warm_up; ++step) {
       if (device->read(sample) == ReadStatus::ok) sim_.step({&sample.pose, 1});
@@ -45,6 +45,7 @@ void add(StepProfile& sum, const StepProfile& step) {
   sum.move_tool += step.move_tool;
   sum.find_contacts += step.find_contacts;
   sum.project_contacts += step.project_contacts;
+  sum.touch_fragments += step.touch_fragments;
   sum.solve_network += step.solve_network;
   sum.cut_springs += step.cut_springs;
   sum.sum_reaction += step.sum_reaction;
@@ -60,10 +61,11 @@ void report(benchmark::State& state, const Press& press, const StepProfile& sum)
   state.counters["1_move_tool"] = mean_us(sum.move_tool);
   state.counters["2_find_contacts"] = mean_us(sum.find_contacts);
   state.counters["3_project_contacts"] = mean_us(sum.project_contacts);
-  state.counters["4_solve_network"] = mean_us(sum.solve_network);
-  state.counters["5_cut_springs"] = mean_us(sum.cut_springs);
-  state.counters["6_sum_reaction"] = mean_us(sum.sum_reaction);
-  state.counters["7_finish_step"] = mean_us(sum.finish_step);
+  state.counters["4_touch_fragments"] = mean_us(sum.touch_fragments);
+  state.counters["5_solve_network"] = mean_us(sum.solve_network);
+  state.counters["6_cut_springs"] = mean_us(sum.cut_springs);
+  state.counters["7_sum_reaction"] = mean_us(sum.sum_reaction);
+  state.counters["8_finish_step"] = mean_us(sum.finish_step);
 }
 
 void step(benchmark::State& state, const char* name, Precision precision) {

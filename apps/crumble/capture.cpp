@@ -36,29 +36,33 @@ Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std:
   Simulation sim = recording.start(how);
   SurfaceCamera camera(sim, SurfaceMode::cracks);
   rerun(recording, sim, camera, steps, [&](std::size_t step) {
-    const Pose tool = recording.tool_count() > 0 ? recording.poses(step)[0] : Pose{};
-    result.captures.push_back({step, tool, camera.surface()});
+    const auto poses = recording.poses(step);
+    result.captures.push_back({step, {poses.begin(), poses.end()}, camera.surface()});
   });
   result.ledger = sim.ledger();
   return result;
 }
 
-std::vector<std::size_t> phase_steps(const std::vector<Sample>& samples) {
+std::vector<std::size_t> phase_steps(const Experiment& experiment) {
+  const std::vector<Sample>& samples = experiment.samples;
+  const std::size_t last = samples.size() - 1;
+  if (!is_press(experiment.scene)) return {0, last / 3, 2 * last / 3, last};
   double deepest = 0;
-  for (const Sample& sample : samples) deepest = std::max(deepest, sample.depth);
+  for (const Sample& sample : samples) deepest = std::max(deepest, sample.tools[0].depth);
   const auto first_at = [&](double depth) {
-    const auto at = std::find_if(samples.begin(), samples.end(), [&](const Sample& s) { return s.depth >= depth; });
-    return static_cast<std::size_t>(std::min(at, samples.end() - 1) - samples.begin());
+    const auto at =
+        std::find_if(samples.begin(), samples.end(), [&](const Sample& s) { return s.tools[0].depth >= depth; });
+    return std::min(static_cast<std::size_t>(at - samples.begin()), last);
   };
   return {0, first_at(0.15 * deepest), first_at(0.5 * deepest), first_at(deepest)};
 }
 
-render::RenderMesh tool_mesh(const ConvexPolyhedron& shape, const Pose& pose) {
-  const TriangleMesh& mesh = shape.surface;
+render::RenderMesh tool_mesh(const Tool& tool, const Pose& hand) {
+  const TriangleMesh& mesh = tool.shape->surface();
   render::RenderMesh drawn =
       render::make_render_mesh(mesh, std::vector<render::Material>(mesh.triangles.size(), render::Material::wood), 40);
   drawn.rest_positions = drawn.positions;
-  const Frame frame(pose);
+  const Frame frame(compose(hand, tool.offset));
   for (Vec3& p : drawn.positions) p = frame.to_scene(p);
   for (auto& triangle : drawn.corner_normals) {
     for (Eigen::Vector3f& n : triangle) n = rotate(frame.rotation, n.cast<double>()).cast<float>();

@@ -13,7 +13,7 @@ namespace crumble::app {
 
 struct Capture {
   std::size_t step = 0;
-  Pose tool;
+  std::vector<Pose> tools;
   render::Surface body;  // closed, vertices shared
 };
 
@@ -32,10 +32,11 @@ Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std:
 void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, const std::vector<std::size_t>& steps,
            const std::function<void(std::size_t)>& take);
 
-/// The four phases of the paper's Fig 11: at rest, first touch, half way, deepest.
-std::vector<std::size_t> phase_steps(const std::vector<Sample>& samples);
+/// Of a press the four phases of the paper's Fig 11: at rest, first touch, half way, deepest. Else the beginning, two
+/// thirds between, and the end.
+std::vector<std::size_t> phase_steps(const Experiment& experiment);
 
 /// A tool as it is drawn.
-render::RenderMesh tool_mesh(const ConvexPolyhedron& shape, const Pose& pose);
+render::RenderMesh tool_mesh(const Tool& tool, const Pose& hand);
 
 }  // namespace crumble::app

@@ -13,50 +13,73 @@ namespace {
 constexpr double kMaxSteps = 1e7;
 constexpr double kDebrisRate = 60;  // Hz
 
-std::unique_ptr<Device> open_press_device(const Scene& scene, const PressOptions& press) {
-  return open_press(press, scene.def.step.tau * scene.def.step.iterations);
-}
-
-// How many ticks a device will be read for: what the caller asked, else what the motion lasts.
-double duration(const Scene& scene, const std::string& device, const PressOptions& press,
-                const Trajectory* trajectory) {
-  if (!trajectory) return press.depth / press.speed;
-  const double first = scene.replay.from && device.empty() ? *scene.replay.from : trajectory->rows.front().time;
-  const double last = scene.replay.to && device.empty() ? *scene.replay.to : trajectory->rows.back().time;
-  return last - first;
-}
-
-struct Motion {
-  std::unique_ptr<Device> device;
-  WorkspaceOptions workspace;
-  double seconds = 0;
-};
-
-// A press moves in the scene's own frame. The scene's own trajectory is placed by the scene's workspace; any other
-// begins, with its origin, where the tool starts.
-Motion open_motion(const Scene& scene, const std::string& device) {
-  const double tick = scene.def.step.tau * scene.def.step.iterations;
-  const bool own_trajectory = device.empty() && scene.trajectory;
-  if (own_trajectory) {
-    return {open_replay(*scene.trajectory, scene.replay, tick), scene.workspace,
-            duration(scene, device, scene.press, &*scene.trajectory)};
-  }
-  PressOptions press = scene.press;
+// The scene's own motion of its first tool, or what the command line puts in its place. A trajectory from there begins,
+// with its origin, where the tool starts.
+Motion first_motion(const Scene& scene, const std::string& device) {
+  Motion motion = scene.motions[0];
+  if (device.empty()) return motion;
+  motion.path.clear();
+  motion.trajectory.reset();
   if (device.starts_with("press:")) {
     const auto speed = parse_double(std::string_view(device).substr(6));
     if (!speed) throw Error(Code::format, "--device '" + device + "': press:MM_PER_S takes a number");
     require_positive("--device press:MM_PER_S", *speed);
-    press.speed = *speed * 1e-3;
+    motion.press.speed = *speed * 1e-3;
   } else if (device.starts_with("replay:")) {
-    const Trajectory trajectory = load_trajectory(device.substr(7));
-    WorkspaceOptions workspace;
-    workspace.pose.position = scene.start.position;
-    workspace.mount = scene.start.orientation;
-    return {open_replay(trajectory, {}, tick), workspace, duration(scene, device, press, &trajectory)};
-  } else if (!device.empty()) {
+    motion.trajectory = load_trajectory(device.substr(7));
+    motion.replay = {};
+    motion.workspace = {};
+    motion.workspace.pose.position = motion.start.position;
+    motion.workspace.mount = motion.start.orientation;
+  } else {
     throw Error(Code::unsupported, "--device '" + device + "' is not known; there are press:MM_PER_S and replay:FILE");
   }
-  return {open_press_device(scene, press), {}, duration(scene, device, press, nullptr)};
+  return motion;
+}
+
+// What moves the tools and attachments of a scene.
+class Movers {
+ public:
+  Movers(const Scene& scene, const std::string& device) {
+    movers_.push_back(open_motion(first_motion(scene, device), scene.tick()));
+    for (std::size_t i = 1; i < scene.motions.size(); ++i) {
+      movers_.push_back(open_motion(scene.motions[i], scene.tick()));
+    }
+    poses_.resize(movers_.size());
+  }
+  std::string names() const {
+    std::string names;
+    for (const MotionDevice& m : movers_) names += (names.empty() ? "" : ", ") + m.device->info().name;
+    return names;
+  }
+  double seconds() const { return std::ranges::max_element(movers_, {}, &MotionDevice::seconds)->seconds; }
+  // True when a pose was resampled.
+  bool read() {
+    bool resampled = false;
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      DeviceSample sample;
+      if (movers_[i].device->read(sample) == ReadStatus::lost) {
+        throw Error(Code::device_lost, "device '" + movers_[i].device->info().name + "' was lost");
+      }
+      resampled |= (sample.flags & sample_flag::kResampled) != 0;
+      poses_[i] = movers_[i].workspace.to_scene(sample.pose);
+    }
+    return resampled;
+  }
+  void write(std::size_t i, const Wrench& wrench) {
+    movers_[i].device->write(movers_[i].workspace.force_to_device(wrench.force),
+                             movers_[i].workspace.torque_to_device(wrench.torque));
+  }
+  std::span<const Pose> poses() const { return poses_; }
+
+ private:
+  std::vector<MotionDevice> movers_;
+  std::vector<Pose> poses_;
+};
+
+double tool_depth(const Scene& scene, std::size_t tool, const Pose& pose) {
+  const Tool& t = scene.def.tools[tool];
+  return scene.top - lowest_point(*t.shape, Frame(compose(pose, t.offset)));
 }
 
 void clear_debris(Experiment& experiment, const DebrisOptions& debris) {
@@ -86,11 +109,12 @@ void require_done(const StepInfo& info, std::size_t step) {
 
 }  // namespace
 
-double tool_depth(const Scene& scene, const Pose& pose) {
-  const Frame frame(pose);
-  double lowest = frame.to_scene(scene.def.tools[0].shape.vertices[0]).y();
-  for (const Vec3& v : scene.def.tools[0].shape.vertices) lowest = std::min(lowest, frame.to_scene(v).y());
-  return scene.top - lowest;
+bool is_press(const Scene& scene) {
+  return scene.motions.size() == 1 && scene.motions[0].path.empty();
+}
+
+std::string tool_name(const Scene& scene, std::size_t tool) {
+  return scene.def.tools.size() == 1 ? "the tool" : "tool " + std::to_string(tool + 1);
 }
 
 std::size_t count_fragments(const Simulation& sim) {
@@ -106,37 +130,35 @@ std::size_t count_inverted(const Simulation& sim) {
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
                           const DebrisOptions& debris, const std::function<void(double)>& progress) {
   if (seconds) require_positive("--seconds", *seconds);
-  Motion motion = open_motion(scene, device);
-  const Workspace workspace(motion.workspace);
+  Movers movers(scene, device);
   Simulation sim(scene.def);
   Experiment experiment(std::move(scene), std::move(sim));
-  experiment.device = motion.device->info().name;
+  experiment.device = movers.names();
+  experiment.peak_forces.resize(experiment.scene.def.tools.size());
 
-  const double tick = experiment.scene.def.step.tau * experiment.scene.def.step.iterations;
-  const std::size_t steps = count_steps(seconds.value_or(motion.seconds), tick);
+  const double tick = experiment.scene.tick();
+  const std::size_t steps = count_steps(seconds.value_or(movers.seconds()), tick);
   const auto debris_period = static_cast<std::size_t>(std::ceil(1 / (kDebrisRate * tick)));
   std::vector<double> cpu;
-  DeviceSample sample;
   for (std::size_t step = 0; step < steps; ++step) {
-    const ReadStatus status = motion.device->read(sample);
-    if (status == ReadStatus::lost) throw Error(Code::device_lost, "device '" + experiment.device + "' was lost");
-    experiment.resampled |= (sample.flags & sample_flag::kResampled) != 0;
-    const Pose pose = workspace.to_scene(sample.pose);
-
+    experiment.resampled |= movers.read();
     if (debris.rule.max_nodes > 0 && step % debris_period == 0) clear_debris(experiment, debris);
     const double before = thread_cpu_seconds();
-    const StepInfo& info = experiment.sim.step({&pose, 1});
+    const StepInfo& info = experiment.sim.step(movers.poses());
     cpu.push_back(1e6 * (thread_cpu_seconds() - before));
     require_done(info, step);
 
-    const Wrench& wrench = experiment.sim.wrench(0);
-    motion.device->write(workspace.force_to_device(wrench.force), workspace.torque_to_device(wrench.torque));
-    experiment.recording.add({&pose, 1}, experiment.sim.state_hash());
-    experiment.samples.push_back(
-        {info.time, tool_depth(experiment.scene, pose), wrench, experiment.sim.counters().cuts});
+    experiment.recording.add(movers.poses(), experiment.sim.state_hash());
+    Sample sample{info.time, {}, experiment.sim.counters().cuts};
+    for (std::size_t tool = 0; tool < experiment.peak_forces.size(); ++tool) {
+      const Wrench& wrench = experiment.sim.wrench(tool);
+      movers.write(tool, wrench);
+      sample.tools.push_back({tool_depth(experiment.scene, tool, movers.poses()[tool]), wrench});
+      experiment.peak_forces[tool] = std::max(experiment.peak_forces[tool], norm(wrench.force));
+    }
+    experiment.samples.push_back(std::move(sample));
     const auto events = experiment.sim.events();
     experiment.events.insert(experiment.events.end(), events.begin(), events.end());
-    experiment.peak_force = std::max(experiment.peak_force, norm(wrench.force));
     if (progress && step % 256 == 0) progress(static_cast<double>(step) / static_cast<double>(steps));
   }
   experiment.cost = bench::percentiles(std::move(cpu));

@@ -1,4 +1,4 @@
-// One experiment: a scene, a device that moves its tool, and all that was measured on the way.
+// One experiment: a scene, devices that move its tools, and all that was measured on the way.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,14 @@
 
 namespace crumble::app {
 
-struct Sample {
-  double time = 0;   // simulated seconds
+struct ToolSample {
   double depth = 0;  // of the tool's lowest point below the body's top at rest, metres; negative above
   Wrench wrench;     // on the tool
+};
+
+struct Sample {
+  double time = 0;  // simulated seconds
+  std::vector<ToolSample> tools;
   std::uint64_t cuts = 0;
 };
 
@@ -34,21 +38,24 @@ struct Experiment {
   Scene scene;
   Simulation sim;
   Recording recording;
-  std::string device;
+  std::string device;  // of each tool and attachment, for people
   bool resampled = false;
   std::vector<Sample> samples;
   std::vector<Event> events;
-  bench::Percentiles cost;  // CPU time of the steps, microseconds; of all threads, divided by those at work
-  double peak_force = 0;    // N
+  bench::Percentiles cost;          // CPU time of the steps, microseconds; of all threads, divided by those at work
+  std::vector<double> peak_forces;  // on each tool, N
 };
 
-/// Moves the scene's tool by `device`, "press:MM_PER_S" or "replay:FILE" (empty: what the scene says), until the motion
-/// is over or `seconds` have been simulated. The origin of FILE's motion lies where the tool starts. `progress` is told
-/// the share done. Throws Error, also when the body diverges.
+/// Moves what the scene moves, its first tool by `device`, "press:MM_PER_S" or "replay:FILE" (empty: what the scene
+/// says), until all motions are over or `seconds` have been simulated. The origin of FILE's motion lies where the tool
+/// starts. `progress` is told the share done. Throws Error, also when the body diverges.
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
                           const DebrisOptions& debris, const std::function<void(double)>& progress);
 
-double tool_depth(const Scene& scene, const Pose& pose);
+/// Whether one tool goes straight down, or up and down by hand, so that its depth tells how far things have come.
+bool is_press(const Scene& scene);
+/// "the tool" when there is but one, else "tool 1" and so on.
+std::string tool_name(const Scene& scene, std::size_t tool);
 /// Without those that were removed.
 std::size_t count_fragments(const Simulation& sim);
 /// Tetrahedra whose four nodes are inside out now.

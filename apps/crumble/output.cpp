@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -13,12 +14,24 @@
 namespace crumble::app {
 namespace {
 
+// The columns of the first tool have no number.
 std::string force_table(const Experiment& experiment) {
-  std::string text = "time_s,depth_mm,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cuts\n";
+  const std::size_t tools = experiment.scene.def.tools.size();
+  std::string text = "time_s";
+  for (std::size_t tool = 0; tool < tools; ++tool) {
+    const std::string number = tool == 0 ? "" : std::to_string(tool + 1) + "_";
+    for (const char* column : {"depth_", "fx_", "fy_", "fz_", "tx_", "ty_", "tz_"}) {
+      text += std::string(",") + column + number + (*column == 'd' ? "mm" : *column == 'f' ? "n" : "nm");
+    }
+  }
+  text += ",cuts\n";
   for (const Sample& s : experiment.samples) {
-    text += to_text(s.time) + ',' + to_text(1e3 * s.depth);
-    for (const Vec3& v : {s.wrench.force, s.wrench.torque}) {
-      for (int axis = 0; axis < 3; ++axis) text += ',' + to_text(v[axis]);
+    text += to_text(s.time);
+    for (const ToolSample& tool : s.tools) {
+      text += ',' + to_text(1e3 * tool.depth);
+      for (const Vec3& v : {tool.wrench.force, tool.wrench.torque}) {
+        for (int axis = 0; axis < 3; ++axis) text += ',' + to_text(v[axis]);
+      }
     }
     text += ',' + std::to_string(s.cuts) + '\n';
   }
@@ -52,41 +65,62 @@ std::string event_table(const Experiment& experiment) {
   return text;
 }
 
-void write_plot(const Experiment& experiment, const std::filesystem::path& path) {
-  std::vector<render::ForceSample> samples;
-  for (const Sample& s : experiment.samples) samples.push_back({s.time, s.depth, s.wrench.force, s.cuts});
-  const auto axis = experiment.scene.trajectory ? render::PlotAxis::time : render::PlotAxis::depth;
-  render::write_force_plot(samples, axis, experiment.scene.name + ": force on the stick", path);
+void write_plots(const Experiment& experiment, const std::filesystem::path& folder) {
+  const bool over_time = !is_press(experiment.scene) || experiment.scene.motions[0].trajectory;
+  for (std::size_t tool = 0; tool < experiment.scene.def.tools.size(); ++tool) {
+    std::vector<render::ForceSample> samples;
+    for (const Sample& s : experiment.samples) {
+      samples.push_back({s.time, s.tools[tool].depth, s.tools[tool].wrench.force, s.cuts});
+    }
+    const std::string number = tool == 0 ? "" : "_" + std::to_string(tool + 1);
+    render::write_force_plot(samples, over_time ? render::PlotAxis::time : render::PlotAxis::depth,
+                             experiment.scene.name + ": force on " + tool_name(experiment.scene, tool),
+                             folder / ("force" + number + ".svg"));
+  }
 }
 
-// One camera for all phases, so that they can be compared.
-render::Camera phase_camera(const Experiment& experiment, double aspect) {
-  Vec3 low = experiment.scene.def.mesh.positions[0], high = low;
-  for (const Vec3& p : experiment.scene.def.mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+// One camera for all phases, so that they can be compared: around all places where there is something of the body.
+render::Camera phase_camera(const std::vector<Capture>& captures, double aspect) {
+  Vec3 low = captures[0].body.mesh.positions[0], high = low;
+  for (const Capture& capture : captures) {
+    for (const Vec3& p : capture.body.mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  }
   const Vec3 size = high - low;
   low -= Vec3(0.1 * size.x(), 0, 0.1 * size.z());
   high += Vec3(0.1 * size.x(), 0.2 * size.y(), 0.1 * size.z());
   return render::fit_camera(low, high, {-0.45, -0.5, -1}, 0.4, aspect, 0.02);
 }
 
-// `bare`: without the tool, which hides much of what it has broken.
+// That of the level wall that the scene has, if any.
+double floor_height(const SimulationDef& def) {
+  const auto floor =
+      std::ranges::find_if(def.walls, [](const Wall& wall) { return wall.plane.normal == Vec3::UnitY(); });
+  return floor == def.walls.end() ? 0 : floor->plane.offset;
+}
+
+// `bare`: without the tools, which hide much of what they have broken.
 void write_phases(const Experiment& experiment, const std::vector<Capture>& captures, bool bare,
                   render::Renderer& renderer, const std::filesystem::path& path) {
   constexpr int kWidth = 640, kHeight = 480;
   render::Scene scene;
-  scene.camera = phase_camera(experiment, double{kWidth} / kHeight);
+  scene.camera = phase_camera(captures, double{kWidth} / kHeight);
+  scene.floor_height = floor_height(experiment.scene.def);
   std::array<render::Image, 4> images;
   std::array<std::string, 4> captions;
   for (std::size_t i = 0; i < 4; ++i) {
     const Capture& capture = captures[i];
     scene.meshes = {capture.body.mesh};
-    if (!bare) scene.meshes.push_back(tool_mesh(experiment.scene.def.tools[0].shape, capture.tool));
+    const std::vector<Tool>& tools = experiment.scene.def.tools;
+    for (std::size_t t = 0; t < tools.size() && !bare; ++t)
+      scene.meshes.push_back(tool_mesh(tools[t], capture.tools[t]));
     images[i] = renderer.draw(scene, kWidth, kHeight);
     const Sample& sample = experiment.samples[capture.step];
     char text[80];
-    std::snprintf(text, sizeof text, "t = %.2f s, depth %.1f mm, %llu cuts", sample.time, 1e3 * sample.depth,
-                  static_cast<unsigned long long>(sample.cuts));
+    std::snprintf(text, sizeof text, "t = %.2f s, ", sample.time);
     captions[i] = text;
+    std::snprintf(text, sizeof text, "depth %.1f mm, ", 1e3 * sample.tools[0].depth);
+    if (is_press(experiment.scene)) captions[i] += text;
+    captions[i] += std::to_string(sample.cuts) + " cuts";
   }
   render::write_png(render::tile_phases(images, captions), path);
 }
@@ -107,7 +141,7 @@ void write_outputs(const Experiment& experiment, const Rerun& again, OutputFolde
   for (std::size_t i = 0; i < again.captures.size(); ++i) {
     render::write_mesh_file(again.captures[i].body, place / ("surface_" + std::to_string(i) + ".ply"));
   }
-  write_plot(experiment, place / "force.svg");
+  write_plots(experiment, place);
   render::OffscreenContext context;
   render::Renderer renderer;
   write_phases(experiment, again.captures, false, renderer, place / "phases.png");

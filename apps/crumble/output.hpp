@@ -9,8 +9,8 @@
 
 namespace crumble::app {
 
-/// Writes force.csv, events.csv, force.svg, phases.png, phases_bare.png, surface_*.ply and experiment.crec: all of them
-/// or none.
+/// Writes force.csv, events.csv, force.svg (force_2.svg, ... of more tools), phases.png, phases_bare.png, surface_*.ply
+/// and experiment.crec: all of them or none.
 void write_outputs(const Experiment& experiment, const Rerun& again, OutputFolder& folder);
 
 /// Throws Error(unsupported) unless `path` ends in one of `extensions` (".a .b"): known before the long work.

@@ -108,14 +108,26 @@ std::string layout_line(const Simulation& sim) {
               l.partitions == 1 ? "" : "s");
 }
 
-std::string curve(const Experiment& experiment) {
-  const bool over_time = experiment.scene.trajectory.has_value();
+std::string curve(const Experiment& experiment, std::size_t tool) {
+  const bool over_time = !is_press(experiment.scene) || experiment.scene.motions[0].trajectory;
   std::vector<double> x, y;
   for (const Sample& s : experiment.samples) {
-    x.push_back(over_time ? s.time : 1e3 * s.depth);
-    y.push_back(norm(s.wrench.force));
+    x.push_back(over_time ? s.time : 1e3 * s.tools[tool].depth);
+    y.push_back(norm(s.tools[tool].wrench.force));
   }
-  return render::text_curve(x, y, 76, 10, {over_time ? "time, s" : "depth, mm", "force on the stick, N"});
+  const std::string label = "force on " + tool_name(experiment.scene, tool) + ", N";
+  return render::text_curve(x, y, 76, 10, {over_time ? "time, s" : "depth, mm", label});
+}
+
+Json force(const Experiment& experiment, std::size_t tool) {
+  Json rows = Json::array();
+  for (const Sample& s : experiment.samples) {
+    rows.push_back({{"time_s", s.time},
+                    {"depth_mm", 1e3 * s.tools[tool].depth},
+                    {"force_n", to_array(s.tools[tool].wrench.force)},
+                    {"torque_nm", to_array(s.tools[tool].wrench.torque)}});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -151,15 +163,12 @@ std::string to_json(const Experiment& experiment, const Rerun& again) {
   json["largest_fragment_nodes"] = largest_fragment(experiment.sim);
   json["events"] = events(experiment);
   json["cut_energy_j"] = released_energy(experiment);
-  json["peak_force_n"] = experiment.peak_force;
-  Json force = Json::array();
-  for (const Sample& s : experiment.samples) {
-    force.push_back({{"time_s", s.time},
-                     {"depth_mm", 1e3 * s.depth},
-                     {"force_n", to_array(s.wrench.force)},
-                     {"torque_nm", to_array(s.wrench.torque)}});
+  json["peak_force_n"] = experiment.peak_forces[0];
+  json["force"] = force(experiment, 0);
+  json["other_tools"] = Json::array();
+  for (std::size_t tool = 1; tool < experiment.peak_forces.size(); ++tool) {
+    json["other_tools"].push_back({{"peak_force_n", experiment.peak_forces[tool]}, {"force", force(experiment, tool)}});
   }
-  json["force"] = std::move(force);
   const bench::Percentiles& cost = experiment.cost;
   json["step_cpu_us"] = {{"p50", cost.p50}, {"p99", cost.p99}, {"p99_9", cost.p99_9}, {"max", cost.max}};
   json["rate_multiple_of_300hz"] = rate_multiple(cost);
@@ -198,13 +207,18 @@ std::string to_report(const Experiment& experiment, const Rerun& again, const st
   text += line("fracture    %llu springs cut, which held %.2f mJ; %zu fragment%s, the largest of %u nodes\n",
                static_cast<unsigned long long>(experiment.sim.counters().cuts), 1e3 * released_energy(experiment),
                fragments, fragments == 1 ? "" : "s", largest_fragment(experiment.sim));
-  text += line("force       peak %.2f N\n", experiment.peak_force);
+  text += "force       peak";
+  for (std::size_t tool = 0; tool < experiment.peak_forces.size(); ++tool) {
+    text += line("%s %.2f N on %s", tool == 0 ? "" : ",", experiment.peak_forces[tool],
+                 tool_name(experiment.scene, tool).c_str());
+  }
+  text += "\n";
   text +=
       line("energy      greatest gain of a solve %.1e of the scale; %llu nodes guarded\n",
            again.ledger.gain_max_relative, static_cast<unsigned long long>(experiment.sim.counters().guarded_nodes));
   text += line("state hash  %s, the same in a second run\n\n", hash_text(experiment.sim.state_hash()).c_str());
   for (const std::string& warning : experiment.scene.warnings) text += "warning: " + warning + "\n";
-  text += curve(experiment);
+  for (std::size_t tool = 0; tool < experiment.peak_forces.size(); ++tool) text += curve(experiment, tool);
   if (!folder.empty()) {
     text += "\npictures    " + (folder / "phases.png").string() + "\n            " + (folder / "force.svg").string() +
             "\nall files   " + folder.string() + "\n";

@@ -52,7 +52,7 @@ void run(const RunOptions& options) {
   const Experiment experiment =
       run_experiment(std::move(scene), options.device, options.seconds, debris, show_progress);
   const Rerun again = rerun(experiment.recording, experiment.scene.def.step,
-                            folder ? phase_steps(experiment.samples) : std::vector<std::size_t>{});
+                            folder ? phase_steps(experiment) : std::vector<std::size_t>{});
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
   if (folder) write_outputs(experiment, again, *folder);
   const std::string text = options.json ? to_json(experiment, again) : to_report(experiment, again, options.out);

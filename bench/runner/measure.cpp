@@ -89,8 +89,8 @@ StepProfile medians(const std::vector<StepProfile>& profiles) {
   StepProfile result;
   for (double StepProfile::*stage :
        {&StepProfile::move_tool, &StepProfile::find_contacts, &StepProfile::project_contacts,
-        &StepProfile::solve_network, &StepProfile::cut_springs, &StepProfile::sum_reaction,
-        &StepProfile::finish_step}) {
+        &StepProfile::touch_fragments, &StepProfile::solve_network, &StepProfile::cut_springs,
+        &StepProfile::sum_reaction, &StepProfile::finish_step}) {
     std::vector<double> times;
     times.reserve(profiles.size());
     for (const StepProfile& profile : profiles) times.push_back(1e6 * profile.*stage);

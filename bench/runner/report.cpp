@@ -56,6 +56,7 @@ ordered_json to_json(const StepProfile& stages) {
   return {{"move_tool", rounded(stages.move_tool)},
           {"find_contacts", rounded(stages.find_contacts)},
           {"project_contacts", rounded(stages.project_contacts)},
+          {"touch_fragments", rounded(stages.touch_fragments)},
           {"solve_network", rounded(stages.solve_network)},
           {"cut_springs", rounded(stages.cut_springs)},
           {"sum_reaction", rounded(stages.sum_reaction)},

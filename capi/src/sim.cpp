@@ -1,6 +1,8 @@
 // A simulation's life and set-up.
+#include <algorithm>
 #include <string>
 
+#include "crumble/base/text.hpp"
 #include "defs.hpp"
 #include "objects.hpp"
 #include "sim_def.hpp"
@@ -31,10 +33,26 @@ void set_up(Sim& sim, Change&& change) {
   }
   SimulationDef def = sim.simulation.definition();
   change(def);
-  sim.poses.reserve(def.tools.size());
+  sim.poses.reserve(def.tools.size() + def.attachments.size());
   Simulation next(std::move(def));
   sim.simulation = std::move(next);
-  sim.poses.resize(sim.simulation.definition().tools.size());
+  const SimulationDef& made = sim.simulation.definition();
+  sim.poses.resize(made.tools.size() + made.attachments.size());
+}
+
+Vec3 read_vector(const char* name, const double* v) {
+  require_pointer(name, v);
+  for (int axis = 0; axis < 3; ++axis) require_finite(name + std::string(".") + "xyz"[axis], v[axis]);
+  return {v[0], v[1], v[2]};
+}
+
+void fix_more(Sim& sim, const std::vector<std::uint32_t>& nodes) {
+  set_up(sim, [&](SimulationDef& definition) {
+    std::vector<std::uint32_t>& fixed = definition.fixed_nodes;
+    fixed.insert(fixed.end(), nodes.begin(), nodes.end());
+    std::sort(fixed.begin(), fixed.end());
+    fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  });
 }
 
 }  // namespace
@@ -93,7 +111,17 @@ crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def* def
 crumble_result crumble_sim_add_tool(crumble_sim sim, const crumble_tool_def* def, uint32_t* index) {
   return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
     set_up(s, [&](SimulationDef& definition) { definition.tools.push_back(read_tool(def)); });
-    if (index) *index = static_cast<uint32_t>(s.poses.size() - 1);
+    if (index) *index = static_cast<uint32_t>(s.simulation.definition().tools.size() - 1);
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_add_attachment(crumble_sim sim, const uint32_t* nodes, uint32_t count, uint32_t* index) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    if (count > 0) require_pointer("nodes", nodes);
+    require_at_most("count", count, static_cast<uint32_t>(s.mesh->node_count()));
+    set_up(s, [&](SimulationDef& definition) { definition.attachments.push_back({{nodes, nodes + count}}); });
+    if (index) *index = static_cast<uint32_t>(s.simulation.definition().attachments.size() - 1);
     return CRUMBLE_OK;
   });
 }
@@ -118,6 +146,29 @@ crumble_result crumble_sim_fix_below(crumble_sim sim, double height) {
   return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
     require_finite("height", height);
     set_up(s, [&](SimulationDef& definition) { definition.fixed_nodes = nodes_below(*s.mesh, height); });
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_fix_box(crumble_sim sim, const double* low, const double* high) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    const Vec3 from = read_vector("low", low), to = read_vector("high", high);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (from[axis] > to[axis]) {
+        throw Error(Code::out_of_range, std::string("low.") + "xyz"[axis] + " " + to_text(from[axis]) +
+                                            " must not be above high, " + to_text(to[axis]));
+      }
+    }
+    fix_more(s, nodes_in_box(*s.mesh, from, to));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_fix_plane(crumble_sim sim, const double* normal, double offset) {
+  return with<Sim>(__func__, sim, [&](Sim& s, const Call&) {
+    const Wall plane{{read_vector("normal", normal), offset}, {}};
+    check(plane);
+    fix_more(s, nodes_behind(*s.mesh, plane.plane));
     return CRUMBLE_OK;
   });
 }

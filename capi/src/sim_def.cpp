@@ -18,6 +18,11 @@ crumble_sim_def read_sim_def(const crumble_sim_def* def) {
   require_at_most("mean_force", given.mean_force, 1);
   require_at_most("reserved", given.reserved, 0);
   require_at_most("precision", given.precision, CRUMBLE_PRECISION_FLOAT32);
+  require_at_most("cut_test", given.cut_test, CRUMBLE_CUT_TEST_AFTER_MOVE);
+  require_at_most("drag_frame", given.drag_frame, CRUMBLE_DRAG_ROOM);
+  require_at_most("surface_samples", given.surface_samples, 1);
+  require_at_most("ball_contact", given.ball_contact, 1);
+  check(Friction{given.ball_static_friction, given.ball_dynamic_friction});
   return given;
 }
 
@@ -38,6 +43,12 @@ void apply(const crumble_sim_def& from, SimulationDef& to) {
   to.step.kernel = from.kernel ? from.kernel : "";
   to.step.threads = from.threads;
   to.step.host_threads = {from.host_threads, from.host_context};
+  to.step.cut_test = static_cast<CutTest>(from.cut_test);
+  to.step.drag_frame = static_cast<DragFrame>(from.drag_frame);
+  to.step.surface_samples = from.surface_samples != 0;
+  to.step.ball_contact = from.ball_contact != 0;
+  to.ball_friction = {from.ball_static_friction, from.ball_dynamic_friction};
+  to.material.spring_damping = from.spring_damping;
 }
 
 crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
@@ -61,6 +72,13 @@ crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
   if (!def.step.kernel.empty()) out.kernel = crumble_kernel_name(kernel_number(def.step.kernel));
   out.host_threads = def.step.host_threads.run;
   out.host_context = def.step.host_threads.context;
+  out.cut_test = static_cast<std::uint32_t>(def.step.cut_test);
+  out.drag_frame = static_cast<std::uint32_t>(def.step.drag_frame);
+  out.surface_samples = def.step.surface_samples;
+  out.ball_contact = def.step.ball_contact;
+  out.ball_static_friction = def.ball_friction.static_coefficient;
+  out.ball_dynamic_friction = def.ball_friction.dynamic_coefficient;
+  out.spring_damping = def.material.spring_damping;
   return out;
 }
 

@@ -5,23 +5,10 @@
 #include "defs.hpp"
 #include "kernels.hpp"
 #include "objects.hpp"
+#include "rigid.hpp"
 
 namespace crumble::capi {
 namespace {
-
-Pose to_pose(const crumble_pose& pose) {
-  const double *p = pose.position, *q = pose.orientation;
-  return {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3])};
-}
-
-crumble_wrench to_c(const Wrench& wrench) {
-  crumble_wrench out;
-  for (int axis = 0; axis < 3; ++axis) {
-    out.force[axis] = wrench.force[axis];
-    out.torque[axis] = wrench.torque[axis];
-  }
-  return out;
-}
 
 crumble_result fail_bad_pose(const Call& call, const crumble_pose* poses, std::uint32_t count) noexcept {
   for (std::uint32_t tool = 0; tool < count; ++tool) {
@@ -120,7 +107,8 @@ crumble_profile to_c(const StepProfile& profile) {
           profile.solve_network,
           profile.cut_springs,
           profile.sum_reaction,
-          profile.finish_step};
+          profile.finish_step,
+          profile.touch_fragments};
 }
 
 crumble_sim_info describe_solver(const Simulation& simulation) {

@@ -2,6 +2,9 @@
 
 #include <string>
 
+#include "crumble/geometry/mesh_solid.hpp"
+#include "crumble/geometry/support_solid.hpp"
+#include "crumble/geometry/tool_solids.hpp"
 #include "defs.hpp"
 
 namespace crumble::capi {
@@ -16,6 +19,7 @@ crumble_tool_def default_tool_def() {
   def.size[0] = def.size[1] = 0.006;
   def.size[2] = 0.05;
   def.sides = 16;
+  def.offset.orientation[0] = 1;
   return def;
 }
 
@@ -24,6 +28,10 @@ crumble_wall_def default_wall_def() {
   def.struct_size = sizeof def;
   def.normal[1] = 1;
   return def;
+}
+
+Vec3 to_vector(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
 }
 
 TriangleMesh read_triangles(const crumble_tool_def& def) {
@@ -44,14 +52,24 @@ TriangleMesh read_triangles(const crumble_tool_def& def) {
   return mesh;
 }
 
-ConvexPolyhedron make_tool_shape(const crumble_tool_def& def) {
+Solid make_tool_shape(const crumble_tool_def& def) {
   switch (def.shape) {
     case CRUMBLE_TOOL_STICK:
       return make_round_stick(def.radius, def.length, def.sides);
     case CRUMBLE_TOOL_BAR:
-      return make_bar({def.size[0], def.size[1], def.size[2]});
+      return make_bar(to_vector(def.size));
     case CRUMBLE_TOOL_MESH:
-      return make_convex(read_triangles(def));
+      return make_mesh_solid(read_triangles(def), {.auto_orient = def.auto_orient != 0});
+    case CRUMBLE_TOOL_BALL:
+      return make_ball(def.radius);
+    case CRUMBLE_TOOL_CAPSULE:
+      return make_capsule(def.radius, def.length);
+    case CRUMBLE_TOOL_CONE:
+      return make_cone(def.radius, def.length);
+    case CRUMBLE_TOOL_BLADE:
+      return make_blade(to_vector(def.size), def.bevel == 0 ? def.size[1] : def.bevel);
+    case CRUMBLE_TOOL_SUPPORT:
+      return make_support_solid({def.support, def.support_context}, to_vector(def.inside));
     default:
       throw Error(Code::out_of_range, "shape must be a CRUMBLE_TOOL_ value, is " + std::to_string(def.shape));
   }
@@ -62,9 +80,14 @@ ConvexPolyhedron make_tool_shape(const crumble_tool_def& def) {
 Tool read_tool(const crumble_tool_def* def) {
   const crumble_tool_def given = read_def("def", def, default_tool_def());
   require_at_most("reserved", given.reserved, 0);
+  require_at_most("reserved_2", given.reserved_2, 0);
+  require_at_most("auto_orient", given.auto_orient, 1);
+  const double* const q = given.offset.orientation;
+  const Pose offset{to_vector(given.offset.position), Quat(q[0], q[1], q[2], q[3])};
+  if (!is_valid(offset)) throw Error(Code::bad_pose, "offset must have a finite position and a unit quaternion");
   const Friction friction{given.static_friction, given.dynamic_friction};
   check(friction);
-  return {make_tool_shape(given), friction};
+  return {make_tool_shape(given), friction, renormalized(offset)};
 }
 
 Wall read_wall(const crumble_wall_def* def) {

@@ -50,6 +50,26 @@ class Fields {
     }
     return static_cast<std::uint32_t>(value);
   }
+  /// A list of whole numbers below `limit`.
+  std::vector<std::uint32_t> counts(const std::string& key, std::size_t limit) {
+    const nlohmann::json& value = at(key);
+    if (!value.is_array()) fail(name(key), "must be a list, is " + shown(value));
+    std::vector<std::uint32_t> all;
+    for (const nlohmann::json& each : value) {
+      if (!each.is_number_unsigned() || each.get<std::uint64_t>() >= limit) {
+        fail(name(key) + "[" + std::to_string(all.size()) + "]",
+             "must be a whole number below " + std::to_string(limit) + ", is " + shown(each));
+      }
+      all.push_back(each.get<std::uint32_t>());
+    }
+    return all;
+  }
+  bool truth(const std::string& key, bool otherwise) {
+    if (!has(key)) return otherwise;
+    const nlohmann::json& value = at(key);
+    if (!value.is_boolean()) fail(name(key), "must be true or false, is " + shown(value));
+    return value.get<bool>();
+  }
   std::string text(const std::string& key) {
     const nlohmann::json& value = at(key);
     if (!value.is_string()) fail(name(key), "must be a text, is " + shown(value));

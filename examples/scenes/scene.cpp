@@ -5,10 +5,9 @@
 
 #include "crumble/base/file.hpp"
 #include "crumble/base/text.hpp"
-#include "crumble/base/transcendental.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "scenes/embedded.hpp"
-#include "scenes/fields.hpp"
+#include "scenes/read_tools.hpp"
 
 namespace crumble {
 namespace {
@@ -64,17 +63,11 @@ Material read_material(Fields fields) {
   Material material;
   material.stiffness = fields.number("stiffness", material.stiffness);
   material.damping_ratio = fields.number("damping_ratio", material.damping_ratio);
+  material.spring_damping = fields.number("spring_damping", material.spring_damping);
   material.length_limit = fields.number("length_limit", material.length_limit);
   material.mass = fields.number("mass", material.mass);
   fields.finish();
   return material;
-}
-
-Friction read_friction(Fields fields) {
-  const Friction friction{fields.number("static"), fields.number("dynamic")};
-  fields.finish();
-  fields.build([&] { check(friction); });
-  return friction;
 }
 
 Wall read_wall(Fields fields) {
@@ -84,82 +77,32 @@ Wall read_wall(Fields fields) {
   return wall;
 }
 
-Tool read_tool(Fields fields) {
-  Tool tool;
-  if (fields.has("round_stick")) {
-    Fields stick = fields.object("round_stick");
-    const double radius = stick.positive("diameter") / 2, length = stick.positive("length");
-    const std::uint32_t sides = stick.has("sides") ? stick.count("sides") : 16;
-    stick.finish();
-    tool.shape = stick.build([&] { return make_round_stick(radius, length, sides); });
-  } else if (fields.has("bar")) {
-    tool.shape = make_bar(fields.sizes("bar"));
-  } else {
-    Fields::fail(fields.name("round_stick"), "is missing, and so is bar: a tool needs one of them");
+DragFrame read_drag_frame(Fields& scene) {
+  const std::string name = scene.text("drag_frame");
+  if (name == "fragment") return DragFrame::fragment;
+  if (name == "room") return DragFrame::room;
+  Fields::fail(scene.name("drag_frame"), "must be fragment or room, is " + name);
+}
+
+std::vector<std::uint32_t> read_fixed(Fields& scene, const TetMesh& mesh) {
+  std::vector<std::uint32_t> nodes;
+  if (scene.has("fixed_below")) nodes = nodes_below(mesh, scene.number("fixed_below"));
+  if (scene.has("fixed")) {
+    for (Fields& region : scene.objects("fixed")) {
+      const std::vector<std::uint32_t> more = read_region(std::move(region), mesh);
+      nodes.insert(nodes.end(), more.begin(), more.end());
+    }
   }
-  if (fields.has("friction")) tool.friction = read_friction(fields.object("friction"));
-  fields.finish();
-  return tool;
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
 }
 
-Quat read_turn(Fields& fields, const char* axis, const char* degrees) {
-  if (!fields.has(axis) && !fields.has(degrees)) return Quat::Identity();
-  const double angle = fields.number(degrees);
-  require_in_range(fields.name(degrees), angle, -360, 360);
-  return axis_angle(fields.direction(axis), angle * kPi / 180);
-}
-
-double lowest(const ConvexPolyhedron& shape, const Quat& orientation) {
-  const Mat3 turn = rotation_matrix(orientation);
-  double least = rotate(turn, shape.vertices[0]).y();
-  for (const Vec3& v : shape.vertices) least = std::min(least, rotate(turn, v).y());
-  return least;
-}
-
-// Where the tool starts: `clearance` above the body, at x and z, turned.
-Pose read_start(Fields fields, const Scene& scene) {
-  Pose pose;
-  pose.orientation = read_turn(fields, "axis", "degrees");
-  const double clearance = fields.number("clearance", 0);
-  pose.position = {fields.number("x", 0), scene.top + clearance - lowest(scene.def.tools[0].shape, pose.orientation),
-                   fields.number("z", 0)};
-  fields.finish();
-  return pose;
-}
-
-WorkspaceOptions read_workspace(Fields fields) {
-  WorkspaceOptions workspace;
-  workspace.pose.position = fields.vector("position");
-  workspace.pose.orientation = read_turn(fields, "axis", "degrees");
-  workspace.mount = read_turn(fields, "mount_axis", "mount_degrees");
-  workspace.scale = fields.positive("scale", 1);
-  workspace.force_gain = fields.number("force_gain", 1);
-  fields.finish();
-  return workspace;
-}
-
-void read_motion(Fields fields, const std::filesystem::path& folder, Scene& scene) {
-  if (fields.has("press")) {
-    Fields press = fields.object("press");
-    scene.press.speed = press.positive("speed", scene.press.speed);
-    scene.press.depth = press.positive("depth");
-    press.finish();
-  }
-  if (fields.has("replay")) {
-    Fields replay = fields.object("replay");
-    const std::string file = replay.text("file");
-    std::error_code none;
-    const bool beside = !folder.empty() && std::filesystem::exists(folder / file, none);
-    scene.trajectory = replay.build([&] { return load_trajectory(beside ? (folder / file).string() : file); });
-    if (replay.has("from")) scene.replay.from = replay.number("from");
-    if (replay.has("to")) scene.replay.to = replay.number("to");
-    scene.workspace = read_workspace(replay.object("workspace"));
-    replay.finish();
-  }
-  if (!fields.has("press") && !fields.has("replay")) {
-    Fields::fail(fields.name("press"), "is missing, and so is replay: a motion needs one of them");
-  }
-  fields.finish();
+void read_step(Fields& fields, StepSettings& step) {
+  if (fields.has("drag_frame")) step.drag_frame = read_drag_frame(fields);
+  step.surface_samples = fields.truth("surface_samples", step.surface_samples);
+  step.ball_contact = fields.truth("ball_contact", step.ball_contact);
+  if (fields.has("precision")) step.precision = read_precision(fields);
 }
 
 Scene read_scene(Fields fields, const std::filesystem::path& folder, Preset preset) {
@@ -171,18 +114,17 @@ Scene read_scene(Fields fields, const std::filesystem::path& folder, Preset pres
   scene.warnings = std::move(body.warnings);
   for (const Vec3& p : scene.def.mesh.positions) scene.top = std::max(scene.top, p.y());
   if (fields.has("material")) scene.def.material = read_material(fields.object("material"));
-  if (fields.has("fixed_below")) scene.def.fixed_nodes = nodes_below(scene.def.mesh, fields.number("fixed_below"));
+  scene.def.fixed_nodes = read_fixed(fields, scene.def.mesh);
   scene.def.gravity = fields.vector("gravity", scene.def.gravity);
   if (fields.has("walls")) {
     scene.def.walls.clear();
     for (Fields& wall : fields.objects("walls")) scene.def.walls.push_back(read_wall(std::move(wall)));
   }
-  scene.def.tools.push_back(read_tool(fields.object("tool")));
-  if (fields.has("precision")) scene.def.step.precision = read_precision(fields);
+  if (fields.has("ball_friction")) scene.def.ball_friction = read_friction(fields.object("ball_friction"));
+  read_tools(fields, folder, scene);
+  if (fields.has("attachments")) read_attachments(fields, scene);
+  read_step(fields, scene.def.step);
   if (preset == Preset::paper) apply_paper_preset(scene.def);
-  scene.start = read_start(fields.object("start"), scene);
-  scene.press.start = scene.start;
-  read_motion(fields.object("motion"), folder, scene);
   fields.finish();
   return scene;
 }

@@ -1,8 +1,9 @@
-// Scenes: a body, a tool, and the motion that moves it, as JSON. One library of them for tests, benchmarks and apps.
+// Scenes: a body, tools, and the motions that move them, as JSON. One library of them for tests, benchmarks and apps.
 //
 // docs/scenes.md is the reference of the format. SI units; angles in degrees.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,18 +17,28 @@ namespace crumble {
 
 enum class Preset { standard, paper };
 
-struct Scene {
-  std::string name;
-  std::string description;
-  SimulationDef def;  // one tool
-  MeshQuality quality;
-  std::vector<std::string> warnings;  // of the mesh generator
-  Pose start;                         // of the tool
-  PressOptions press;                 // from `start`; the device where the scene names no trajectory
+/// How a scene moves one of its tools or attachments: by its path if it has one, else by its trajectory, else it
+/// presses.
+struct Motion {
+  Pose start;
+  PressOptions press;           // from `start`
+  std::vector<PathPoint> path;  // from `start`
   std::optional<Trajectory> trajectory;
   WorkspaceOptions workspace;  // from the trajectory's frame to the scene
   ReplayOptions replay;
-  double top = 0;  // y of the highest node at rest, metres: where the tool's depth is 0
+};
+
+struct Scene {
+  std::string name;
+  std::string description;
+  SimulationDef def;  // one tool at least
+  MeshQuality quality;
+  std::vector<std::string> warnings;  // of the mesh generator
+  std::vector<Motion> motions;        // of the tools, then of the attachments
+  double top = 0;                     // y of the highest node at rest, metres: where a tool's depth is 0
+
+  /// Simulated seconds that a tick of a device takes.
+  double tick() const { return def.step.tau * def.step.iterations; }
 };
 
 /// `name` is a built-in scene or the path of a JSON file. Throws Error: io, format (JSON, unknown key, missing key,
@@ -39,5 +50,13 @@ Scene load_scene(const std::string& name, Preset preset);
 Trajectory load_trajectory(const std::string& name);
 
 std::vector<std::string> scene_names();
+
+/// A device that makes a motion, and how long it does.
+struct MotionDevice {
+  std::unique_ptr<Device> device;
+  Workspace workspace;
+  double seconds = 0;
+};
+MotionDevice open_motion(const Motion& motion, double tick);
 
 }  // namespace crumble

@@ -1,8 +1,6 @@
 #include "crumble/contact/contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "contact/tool_bounds.hpp"
 #include "crumble/base/error.hpp"
@@ -10,59 +8,52 @@
 namespace crumble {
 namespace {
 
-// The paper's rule: from an inside point along `direction` to the first face on the way out.
-bool leave_along(const ConvexPolyhedron& shape, const Vec3& p, const Vec3& direction, Vec3& out, std::uint32_t& face) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t f = 0; f < shape.planes.size(); ++f) {
-    const double approach = dot(shape.planes[f].normal, direction);
-    if (approach <= 0) continue;
-    const double way = (shape.planes[f].offset - dot(shape.planes[f].normal, p)) / approach;
-    if (way < least) least = way, face = f;
+void check(const Attachment& attachment, std::size_t index, std::span<const std::uint8_t> fixed) {
+  const std::string name = "attachments[" + std::to_string(index) + "].nodes";
+  if (attachment.nodes.empty()) throw Error(Code::empty, name + " is empty");
+  for (const std::uint32_t node : attachment.nodes) {
+    if (node >= fixed.size()) {
+      throw Error(Code::out_of_range,
+                  name + " names node " + std::to_string(node) + " of " + std::to_string(fixed.size()));
+    }
+    if (fixed[node]) throw Error(Code::state, name + " names node " + std::to_string(node) + ", which is fixed");
   }
-  if (!std::isfinite(least)) return false;
-  out = p + least * direction;
-  return true;
 }
 
 }  // namespace
 
 Contacts::Contacts(std::vector<Tool> tools, std::vector<Wall> walls, std::span<const std::uint8_t> fixed,
-                   ContactRule rule)
-    : tools_(std::move(tools)), walls_(std::move(walls)), motions_(tools_.size()), rule_(rule) {
+                   ContactRule rule, std::vector<Attachment> attachments, SurfaceSamples surface)
+    : tools_(std::move(tools)),
+      walls_(std::move(walls)),
+      attachments_(std::move(attachments)),
+      motions_(tools_.size() + attachments_.size()),
+      rule_(rule),
+      surface_(std::move(surface)) {
   for (const Tool& tool : tools_) {
-    if (tool.shape.planes.size() < 4) throw Error(Code::empty, "tool.shape has no faces");
-    check(tool.friction);
-    corners_.push_back(corners_of(tool.shape));
+    check(tool);
+    const Box box = box_of(*tool.shape, Frame(Pose{}));
+    bounds_.push_back({box.low, box.high});
   }
   for (const Wall& wall : walls_) check(wall);
   // at most one contact per node: nothing grows later
   constraints_.reserve(fixed.size()), previous_.reserve(fixed.size());
   places_.reserve(fixed.size()), previous_places_.reserve(fixed.size());
   roused_.reserve(fixed.size());
-  last_faces_.assign(fixed.size(), 0);
+  hints_.assign(fixed.size(), 0);
+  held_at_.assign(fixed.size(), 0);
   for (const std::uint8_t is_fixed : fixed) uses_.push_back(is_fixed ? Use::fixed : Use::free);
-}
-
-void Contacts::move_tool(std::size_t tool, const Pose& target, double tau) noexcept {
-  Motion& m = motions_[tool];
-  const Frame target_frame(target);
-  m.from = m.placed ? m.to : target;
-  m.from_frame = m.placed ? m.to_frame : target_frame;
-  m.to = target;
-  m.to_frame = target_frame;
-  m.placed = true;
-  m.travel = greatest_travel(corners_[tool], m.from_frame, m.to_frame);
-  const double places = std::ceil(m.travel / tools_[tool].shape.half_thickness);
-  m.jumped = places > kMaxPlaces;
-  if (m.jumped) {
-    m.from = m.to, m.from_frame = m.to_frame, m.travel = 0, m.engaged = false;
-    for (NodeConstraint& c : constraints_) {
-      if (c.holder == tool) c.state = ContactState::released;
+  for (std::size_t a = 0; a < attachments_.size(); ++a) {
+    check(attachments_[a], a, fixed);
+    for (const std::uint32_t node : attachments_[a].nodes) {
+      if (uses_[node] == Use::attached) {
+        throw Error(Code::state, "attachments[" + std::to_string(a) + "].nodes names node " + std::to_string(node) +
+                                     ", which is attached already");
+      }
+      uses_[node] = Use::attached;
+      anchors_.push_back(Vec3::Zero());
     }
   }
-  m.velocity = (m.to_frame.origin - m.from_frame.origin) / tau;
-  m.turning = (m.to_frame.rotation - m.from_frame.rotation) / tau;
-  m.places = m.jumped ? 1 : static_cast<std::uint32_t>(std::max(places, 1.0));
 }
 
 std::uint32_t Contacts::place_count() const noexcept {
@@ -77,173 +68,59 @@ void Contacts::find(std::uint32_t place, NodeSource& nodes) noexcept {
   constraints_.clear();
   places_.clear();
   roused_.clear();
-  for (const NodeConstraint& c : previous_) uses_[c.node] = Use::free;
+  for (const NodeConstraint& c : previous_) {
+    if (uses_[c.node] == Use::held) uses_[c.node] = Use::free;
+  }
   for (std::uint32_t t = 0; t < tools_.size(); ++t) find_of_tool(t, std::min(place, motions_[t].places - 1), nodes);
+  for (std::size_t a = 0; a < attachments_.size(); ++a) find_attached(a, nodes);
   find_of_walls(nodes);
 }
 
-void Contacts::find_of_tool(std::uint32_t t, std::uint32_t place_index, NodeSource& nodes) noexcept {
-  const Tool& tool = tools_[t];
-  Motion& motion = motions_[t];
-  if (!motion.placed) return;
-  const bool last = place_index + 1 == motion.places;
-  const double progress = static_cast<double>(place_index + 1) / motion.places;
-  const Frame frame = last ? motion.to_frame : Frame(interpolate(motion.from, motion.to, progress));
-  const Box box = box_of(corners_[t], frame);
-  const std::span<const std::uint32_t> near = nodes.inside(box.low, box.high);
-  motion.engaged = motion.engaged || is_outside(tool, frame, near, nodes);
-  if (!motion.engaged) return;
-  keep_on_tool(t, frame, nodes);
-  enter_tool(t, frame, near, nodes);
+void Contacts::project(NodeSource& nodes) noexcept {
+  for (NodeConstraint& c : constraints_) project(c, nodes);
 }
 
-bool Contacts::is_outside(const Tool& tool, const Frame& frame, std::span<const std::uint32_t> near,
-                          const NodeSource& nodes) const noexcept {
-  return std::none_of(near.begin(), near.end(), [&](std::uint32_t i) {
-    if (uses_[i] == Use::fixed || uses_[i] == Use::excluded) return false;
-    std::uint32_t face = 0;
-    return greatest_plane_distance(tool.shape, frame.to_local(nodes.position(i)), face) < -kTouch;
-  });
-}
-
-// What the tool held before. One that sticks stays where it is on the tool; its position is not asked for.
-void Contacts::keep_on_tool(std::uint32_t t, const Frame& frame, const NodeSource& nodes) noexcept {
-  const Tool& tool = tools_[t];
-  const Motion& motion = motions_[t];
-  // a paper-rule contact holds what is inside only; the other follows the surface
-  const double keep_gap = rule_ == ContactRule::along_motion ? 1e-9 : motion.travel + kKeepGap;
-  for (std::size_t k = 0; k < previous_.size(); ++k) {
-    const NodeConstraint& before = previous_[k];
-    if (before.holder != t || before.state == ContactState::released || uses_[before.node] != Use::free) continue;
-    Place place = previous_places_[k];
-    if (before.state == ContactState::stick ||
-        place_on_tool(tool, motion, frame, keep_gap, frame.to_local(nodes.position(before.node)), place)) {
-      hold(t, frame, before.node, before.state, place).approach = before.approach;
-    }
+void Contacts::project(NodeConstraint& c, NodeSource& nodes) noexcept {
+  if (c.state == ContactState::stick || c.state == ContactState::attached) {
+    nodes.place(c.node, c.point, c.velocity);
+    return;
   }
+  const Vec3 velocity = nodes.velocity(c.node);
+  const double approach = dot(c.velocity - velocity, c.normal);
+  if (c.state == ContactState::fresh) c.approach = std::max(c.approach, approach);
+  nodes.place(c.node, c.point, velocity + approach * c.normal);
 }
 
-// What came to lie inside it. Most of what is near is outside, and mostly above the face that it was above last time.
-void Contacts::enter_tool(std::uint32_t t, const Frame& frame, std::span<const std::uint32_t> near,
-                          const NodeSource& nodes) noexcept {
-  const Tool& tool = tools_[t];
-  const Motion& motion = motions_[t];
-  const std::vector<Plane>& planes = tool.shape.planes;
-  for (const std::uint32_t i : near) {
-    if (uses_[i] != Use::free && uses_[i] != Use::asleep) continue;
-    const Vec3 local = frame.to_local(nodes.position(i));
-    std::uint32_t& face = last_faces_[i];
-    const Plane& likely = planes[face < planes.size() ? face : 0];  // it may be another tool's
-    if (dot(likely.normal, local) - likely.offset >= 0) continue;
-    const double distance = greatest_plane_distance(tool.shape, local, face);
-    if (!(distance < 0)) continue;  // nor what is not a number
-    Place place{local - distance * planes[face].normal, face};
-    if (rule_ == ContactRule::along_motion) leave_along_motion(tool, motion, frame, local, place);
-    if (uses_[i] == Use::asleep) roused_.push_back(i);
-    hold(t, frame, i, ContactState::fresh, place);
-  }
-}
-
-// Where a node at `local` that the tool held before is put on it; false when it came to lie farther outside than
-// `keep_gap`.
-bool Contacts::place_on_tool(const Tool& tool, const Motion& motion, const Frame& frame, double keep_gap,
-                             const Vec3& local, Place& place) const noexcept {
-  const SurfaceQuery nearest = nearest_surface(tool.shape, local, keep_gap);
-  if (nearest.signed_distance > keep_gap) return false;
-  place = {nearest.point, nearest.plane};
-  if (rule_ == ContactRule::along_motion && nearest.signed_distance < 0) {
-    leave_along_motion(tool, motion, frame, local, place);
-  }
-  return true;
-}
-
-void Contacts::leave_along_motion(const Tool& tool, const Motion& motion, const Frame& frame, const Vec3& local,
-                                  Place& place) const noexcept {
-  const Vec3 motion_here = frame.to_scene(local) - motion.from_frame.to_scene(local);
-  const double distance = norm(motion_here);
-  if (distance > 1e-12)
-    leave_along(tool.shape, local, rotate_back(frame.rotation, motion_here / distance), place.anchor, place.face);
-}
-
-NodeConstraint& Contacts::hold(std::uint32_t t, const Frame& frame, std::uint32_t node, ContactState state,
-                               const Place& place) noexcept {
-  const Tool& tool = tools_[t];
+NodeConstraint Contacts::on_tool(std::uint32_t t, const Frame& frame, std::uint32_t node, ContactState state,
+                                 const Place& place) const noexcept {
   NodeConstraint c;
-  c.holder = t;
-  c.point = frame.to_scene(place.anchor);
-  c.normal = rotate(frame.rotation, tool.shape.planes[place.face].normal);
-  c.velocity = motions_[t].velocity + rotate(motions_[t].turning, place.anchor);
-  return add(c, node, state, place, tool.friction);
-}
-
-void Contacts::find_of_walls(NodeSource& nodes) noexcept {
-  const auto height = [&](const Vec3& p, std::uint32_t w) {
-    return dot(walls_[w].plane.normal, p) - walls_[w].plane.offset;
-  };
-  for (std::size_t k = 0; k < previous_.size(); ++k) {
-    const NodeConstraint& before = previous_[k];
-    if (before.holder != kWorldHolder || before.state == ContactState::released) continue;
-    if (uses_[before.node] != Use::free) continue;
-    const std::uint32_t w = previous_places_[k].face;
-    const Vec3 p = nodes.position(before.node);
-    const double above = height(p, w);
-    if (above > kKeepGap) continue;
-    const bool sticks = before.state == ContactState::stick;
-    hold_by_wall(before.node, before.state,
-                 {sticks ? previous_places_[k].anchor : Vec3(p - above * walls_[w].plane.normal), w})
-        .approach = before.approach;
-  }
-  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    for (const std::uint32_t i : nodes.behind(walls_[w].plane)) {
-      if (uses_[i] != Use::free) continue;
-      const Vec3 p = nodes.position(i);
-      const double above = height(p, w);
-      if (above < 0) hold_by_wall(i, ContactState::fresh, {p - above * walls_[w].plane.normal, w});
-    }
-  }
-}
-
-NodeConstraint& Contacts::hold_by_wall(std::uint32_t node, ContactState state, const Place& place) noexcept {
-  const Wall& wall = walls_[place.face];
-  NodeConstraint c;
-  c.holder = kWorldHolder;
-  c.point = place.anchor;
-  c.normal = wall.plane.normal;
-  return add(c, node, state, place, wall.friction);
-}
-
-NodeConstraint& Contacts::add(NodeConstraint& c, std::uint32_t node, ContactState state, const Place& place,
-                              const Friction& friction) noexcept {
   c.node = node;
+  c.holder = t;
   c.state = state;
-  c.static_friction = friction.static_coefficient;
-  c.dynamic_friction = friction.dynamic_coefficient;
+  c.point = frame.to_scene(place.anchor);
+  c.normal = rotate(frame.rotation, place.normal);
+  c.velocity = motions_[t].velocity + rotate(motions_[t].turning, place.anchor);
+  c.static_friction = tools_[t].friction.static_coefficient;
+  c.dynamic_friction = tools_[t].friction.dynamic_coefficient;
+  return c;
+}
+
+void Contacts::add(const NodeConstraint& c, const Place& place) noexcept {
+  held_at_[c.node] = static_cast<std::uint32_t>(constraints_.size());
   constraints_.push_back(c);
   places_.push_back(place);
-  uses_[node] = Use::held;
-  return constraints_.back();
-}
-
-void Contacts::project(NodeSource& nodes) noexcept {
-  for (NodeConstraint& c : constraints_) {
-    if (c.state == ContactState::stick) {
-      nodes.place(c.node, c.point, c.velocity);
-    } else {
-      const Vec3 velocity = nodes.velocity(c.node);
-      const double approach = dot(c.velocity - velocity, c.normal);
-      if (c.state == ContactState::fresh) c.approach = std::max(c.approach, approach);
-      nodes.place(c.node, c.point, velocity + approach * c.normal);
-    }
-  }
+  if (c.state != ContactState::attached) uses_[c.node] = Use::held;
 }
 
 void Contacts::drop_released() noexcept {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
+    const std::uint32_t node = constraints_[k].node;
     if (constraints_[k].state == ContactState::released) {
-      uses_[constraints_[k].node] = Use::free;
+      if (uses_[node] == Use::held) uses_[node] = Use::free;
       continue;
     }
+    held_at_[node] = static_cast<std::uint32_t>(kept);
     places_[kept] = places_[k];
     constraints_[kept++] = constraints_[k];
   }
@@ -252,6 +129,7 @@ void Contacts::drop_released() noexcept {
 }
 
 void Contacts::let_sleep(std::uint32_t node) noexcept {
+  if (uses_[node] == Use::attached) return;
   release(node);
   uses_[node] = Use::asleep;
 }
@@ -266,7 +144,7 @@ void Contacts::exclude(std::uint32_t node) noexcept {
 }
 
 void Contacts::release(std::uint32_t node) noexcept {
-  if (uses_[node] != Use::held) return;
+  if (uses_[node] != Use::held && uses_[node] != Use::attached) return;
   for (NodeConstraint& c : constraints_) {
     if (c.node == node) c.state = ContactState::released;
   }
@@ -275,9 +153,13 @@ void Contacts::release(std::uint32_t node) noexcept {
 
 void Contacts::clear() noexcept {
   for (Use& use : uses_) use = use == Use::fixed ? Use::fixed : Use::free;
+  for (const Attachment& attachment : attachments_) {
+    for (const std::uint32_t node : attachment.nodes) uses_[node] = Use::attached;
+  }
   constraints_.clear();
   places_.clear();
   motions_.assign(motions_.size(), Motion{});
+  surface_.clear();
 }
 
 }  // namespace crumble

@@ -18,6 +18,12 @@ void check(const Friction& friction) {
   }
 }
 
+void check(const Tool& tool) {
+  if (!tool.shape) throw Error(Code::empty, "tool.shape is empty");
+  if (!is_valid(tool.offset)) throw Error(Code::bad_pose, "tool.offset is not a pose");
+  check(tool.friction);
+}
+
 void check(const Wall& wall) {
   require_finite("wall.offset", wall.plane.offset);
   require_finite("wall.normal", norm(wall.plane.normal));

@@ -32,26 +32,21 @@ Range range_along(VecView corners, double x, double y, double z) noexcept {
 
 }  // namespace
 
-VecArray corners_of(const ConvexPolyhedron& shape) {
-  VecArray corners((shape.vertices.size() + kLanes - 1) / kLanes * kLanes);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    corners.set(i, shape.vertices[std::min(i, shape.vertices.size() - 1)]);
-  }
-  return corners;
-}
-
-Box box_of(VecView corners, const Frame& frame) noexcept {
+Box box_of(const SolidModel& tool, const Frame& frame) noexcept {
+  const double margin = tool.rounding() + kMargin;
   Box box{frame.origin, frame.origin};
   for (int axis = 0; axis < 3; ++axis) {
     const Mat3& r = frame.rotation;
-    const Range range = range_along(corners, r(axis, 0), r(axis, 1), r(axis, 2));
-    box.low[axis] += range.low - kMargin;
-    box.high[axis] += range.high + kMargin;
+    const Range range = range_along(tool.corners(), r(axis, 0), r(axis, 1), r(axis, 2));
+    box.low[axis] += range.low - margin;
+    box.high[axis] += range.high + margin;
   }
   return box;
 }
 
-double greatest_travel(VecView corners, const Frame& from, const Frame& to) noexcept {
+// A ball about a corner turns by no more than | to - from | of the rotations, taken by the Frobenius norm.
+double greatest_travel(const SolidModel& tool, const Frame& from, const Frame& to) noexcept {
+  const VecView corners = tool.corners();
   const Vec3 d = to.origin - from.origin;
   const Mat3 r = to.rotation - from.rotation;
   double greatest[kLanes] = {};
@@ -65,7 +60,11 @@ double greatest_travel(VecView corners, const Frame& from, const Frame& to) noex
       greatest[k] = squared > greatest[k] ? squared : greatest[k];
     }
   }
-  return std::sqrt(*std::max_element(greatest, greatest + kLanes));
+  const double of_corners = std::sqrt(*std::max_element(greatest, greatest + kLanes));
+  if (tool.rounding() == 0) return of_corners;
+  double squares = 0;
+  for (int i = 0; i < 9; ++i) squares += r(i / 3, i % 3) * r(i / 3, i % 3);
+  return of_corners + tool.rounding() * std::sqrt(squares);
 }
 
 }  // namespace crumble

@@ -42,9 +42,14 @@ void Simulation::audit_solve() noexcept {
   for (std::size_t i = 0; i < before_solve_.size(); ++i) {
     external_work += dot(external_[i], after[i] - before_solve_[i]);
   }
+  for (std::size_t k = 0; balls_ && k < balls_->pushed().size(); ++k) {
+    const std::uint32_t node = balls_->pushed()[k];
+    external_work += dot(balls_->forces()[k], after[node] - before_solve_[node]);
+  }
   for (const NodeConstraint& c : contacts_.constraints()) {
     reaction_work += dot(c.reaction, after[c.node] - before_solve_[c.node]);
   }
+  reaction_work += solver_->holder_work();
   const double now = stored_energy();
   const double gain = now - ledger_.stored - external_work - reaction_work;
   ledger_.gain_max_relative = std::max(ledger_.gain_max_relative, gain / (ledger_.stored + reference_energy_));

@@ -19,6 +19,11 @@ void Simulation::track_fragments() noexcept {
     event.place = solver_->position(split.node);
     event_log_.add(event);
   }
+  if (!fragments_.splits().empty() || regroup_at_ <= info_.step) {
+    regroup(info_.step, new_cuts());
+  } else if (balls_ && info_.new_cuts > 0) {
+    balls_->update(new_cuts(), fragments_.labels(), ball_fragments());
+  }
 }
 
 FragmentState Simulation::fragment_state(std::uint32_t fragment) const {
@@ -35,9 +40,10 @@ void Simulation::set_fragment_state(std::uint32_t fragment, FragmentState state)
     throw Error(Code::state, "fragment " + std::to_string(fragment) + " has been removed");
   }
   if (state == now) return;
-  if (state == FragmentState::asleep) return put_to_sleep(fragment);
-  if (state == FragmentState::removed) return remove(fragment);
-  wake(fragment);
+  if (state == FragmentState::active) wake(fragment);
+  if (state == FragmentState::asleep) put_to_sleep(fragment);
+  if (state == FragmentState::removed) remove(fragment);
+  regroup(last_step(), {});
 }
 
 void Simulation::put_to_sleep(std::uint32_t fragment) noexcept {
@@ -81,12 +87,15 @@ void Simulation::take_away(std::uint32_t node) noexcept {
 }
 
 void Simulation::wake_roused() noexcept {
+  bool woken = false;
   for (const std::uint32_t node : contacts_.roused()) {
     const std::uint32_t fragment = fragments_.labels()[node];
     if (fragment_states_[fragment] != FragmentState::asleep) continue;
     wake(fragment);
     ++counters_.woken;
+    woken = true;
   }
+  if (woken) regroup(last_step(), {});
 }
 
 std::span<const std::uint32_t> Simulation::find_debris(const DebrisRule& rule) noexcept {

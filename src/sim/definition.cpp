@@ -9,6 +9,9 @@ void apply_paper_preset(SimulationDef& def) {
   def.step.policy = TimeStepPolicy::unchecked;
   def.step.iterations = 1;
   def.step.contact_rule = ContactRule::along_motion;
+  def.step.drag_frame = DragFrame::room;
+  def.step.surface_samples = false;
+  def.step.ball_contact = false;
   def.step.cut_test = CutTest::after_move;
   def.step.cut_fade = 0;
   def.step.mean_force = true;
@@ -19,17 +22,37 @@ void apply_paper_preset(SimulationDef& def) {
   for (Wall& wall : def.walls) wall.friction = kPaper;
 }
 
-std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height) {
+namespace {
+
+template <class Has>
+std::vector<std::uint32_t> nodes_where(const TetMesh& mesh, Has&& has) {
   std::vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
-    if (mesh.positions[i].y() <= height) nodes.push_back(i);
+    if (has(mesh.positions[i])) nodes.push_back(i);
   }
   return nodes;
 }
 
+}  // namespace
+
+std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height) {
+  return nodes_where(mesh, [&](const Vec3& p) { return p.y() <= height; });
+}
+
+std::vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high) {
+  return nodes_where(mesh, [&](const Vec3& p) {
+    return p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y() && p.z() >= low.z() &&
+           p.z() <= high.z();
+  });
+}
+
+std::vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane) {
+  return nodes_where(mesh, [&](const Vec3& p) { return dot(plane.normal, p) <= plane.offset; });
+}
+
 namespace {
 
-constexpr std::uint32_t kDefinitionVersion = 2;  // 2: precision, cut test
+constexpr std::uint32_t kDefinitionVersion = 3;  // 3: solids, offsets, attachments, drag frame, samples, balls
 
 void put(ByteWriter& out, const Vec3& v) {
   out.put(v.x()), out.put(v.y()), out.put(v.z());
@@ -73,6 +96,20 @@ std::vector<Vec3> get_points(ByteReader& in) {
   return points;
 }
 
+void put(ByteWriter& out, const Pose& pose) {
+  put(out, pose.position);
+  const Quat& q = pose.orientation;
+  out.put(q.w()), out.put(q.x()), out.put(q.y()), out.put(q.z());
+}
+
+Pose get_pose(ByteReader& in) {
+  Pose pose;
+  pose.position = get_vector(in);
+  const auto w = in.get<double>(), x = in.get<double>(), y = in.get<double>(), z = in.get<double>();
+  pose.orientation = Quat(w, x, y, z);
+  return pose;
+}
+
 void put(ByteWriter& out, const Friction& f) {
   out.put(f.static_coefficient), out.put(f.dynamic_coefficient);
 }
@@ -86,7 +123,8 @@ void put(ByteWriter& out, const StepSettings& s) {
   out.put(s.tau), out.put(static_cast<std::uint8_t>(s.policy)), out.put(s.iterations);
   out.put(static_cast<std::uint8_t>(s.contact_rule)), out.put(s.cut_fade),
       out.put(static_cast<std::uint8_t>(s.mean_force)), out.put(static_cast<std::uint8_t>(s.precision));
-  out.put(static_cast<std::uint8_t>(s.cut_test));
+  out.put(static_cast<std::uint8_t>(s.cut_test)), out.put(static_cast<std::uint8_t>(s.drag_frame));
+  out.put(static_cast<std::uint8_t>(s.surface_samples)), out.put(static_cast<std::uint8_t>(s.ball_contact));
 }
 
 StepSettings get_settings(ByteReader& in) {
@@ -99,6 +137,9 @@ StepSettings get_settings(ByteReader& in) {
   s.mean_force = in.get<std::uint8_t>() != 0;
   s.precision = get_enum<Precision>(in, 1, "precision");
   s.cut_test = get_enum<CutTest>(in, 1, "cut test");
+  s.drag_frame = get_enum<DragFrame>(in, 1, "drag frame");
+  s.surface_samples = in.get<std::uint8_t>() != 0;
+  s.ball_contact = in.get<std::uint8_t>() != 0;
   return s;
 }
 
@@ -110,8 +151,8 @@ void write_definition(const SimulationDef& def, ByteWriter& out) {
   put(out, def.mesh.positions);
   put_indices(out, def.mesh.tetrahedra);
   for (const NodeKind kind : def.mesh.kinds) out.put(static_cast<std::uint8_t>(kind));
-  for (const double v :
-       {def.material.stiffness, def.material.damping_ratio, def.material.length_limit, def.material.mass}) {
+  for (const double v : {def.material.stiffness, def.material.damping_ratio, def.material.spring_damping,
+                         def.material.length_limit, def.material.mass}) {
     out.put(v);
   }
   out.put(static_cast<std::uint8_t>(def.mass_rule));
@@ -121,10 +162,13 @@ void write_definition(const SimulationDef& def, ByteWriter& out) {
   for (const Wall& wall : def.walls) put(out, wall.plane.normal), out.put(wall.plane.offset), put(out, wall.friction);
   out.put(static_cast<std::uint64_t>(def.tools.size()));
   for (const Tool& tool : def.tools) {
-    put(out, tool.shape.surface.vertices);
-    put_indices(out, tool.shape.surface.triangles);
+    tool.shape->write(out);
     put(out, tool.friction);
+    put(out, tool.offset);
   }
+  out.put(static_cast<std::uint64_t>(def.attachments.size()));
+  for (const Attachment& attachment : def.attachments) out.put(attachment.nodes);
+  put(out, def.ball_friction);
   put(out, def.step);
 }
 
@@ -139,8 +183,8 @@ SimulationDef read_definition(ByteReader& in) {
   std::vector<NodeKind> kinds(positions.size());
   for (NodeKind& kind : kinds) kind = get_enum<NodeKind>(in, 3, "node kind");
   def.mesh = make_tet_mesh(std::move(positions), std::move(tetrahedra), std::move(kinds));
-  for (double* v :
-       {&def.material.stiffness, &def.material.damping_ratio, &def.material.length_limit, &def.material.mass}) {
+  for (double* v : {&def.material.stiffness, &def.material.damping_ratio, &def.material.spring_damping,
+                    &def.material.length_limit, &def.material.mass}) {
     *v = in.get<double>();
   }
   def.mass_rule = get_enum<MassRule>(in, 1, "mass rule");
@@ -153,11 +197,14 @@ SimulationDef read_definition(ByteReader& in) {
     def.walls.push_back({{normal, offset}, get_friction(in)});
   }
   for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
-    TriangleMesh surface{get_points(in), {}};
-    surface.triangles = get_indices<3>(in);
-    ConvexPolyhedron shape = make_convex(surface);
-    def.tools.push_back({std::move(shape), get_friction(in)});
+    Tool tool{read_solid(in), get_friction(in), {}};
+    tool.offset = get_pose(in);
+    def.tools.push_back(std::move(tool));
   }
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    def.attachments.push_back({in.get_vector<std::uint32_t>()});
+  }
+  def.ball_friction = get_friction(in);
   def.step = get_settings(in);
   return def;
 }

@@ -9,7 +9,7 @@ namespace crumble {
 namespace {
 
 constexpr std::uint64_t kRecordingMagic = 0x31304345524d5243u;  // "CRMREC01"
-constexpr std::uint32_t kRecordingVersion = 2;
+constexpr std::uint32_t kRecordingVersion = 3;                  // 3: node forces
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
   Hash hash;
@@ -29,10 +29,20 @@ Pose get_pose(ByteReader& in) {
   return {{v[0], v[1], v[2]}, Quat(v[3], v[4], v[5], v[6])};
 }
 
+// Those of the changes that came before the step and after the one before it.
+template <class Change>
+std::span<const Change> before_step(const std::vector<Change>& changes, std::size_t step) {
+  const auto first = std::lower_bound(changes.begin(), changes.end(), step,
+                                      [](const Change& change, std::size_t at) { return change.step < at; });
+  const auto last = std::find_if(first, changes.end(), [&](const Change& change) { return change.step != step; });
+  return {first, last};
+}
+
 }  // namespace
 
 Recording::Recording(const Simulation& start)
-    : snapshot_(start.snapshot()), tool_count_(start.definition().tools.size()) {
+    : snapshot_(start.snapshot()),
+      tool_count_(start.definition().tools.size() + start.definition().attachments.size()) {
   ByteWriter out;
   write_definition(start.definition(), out);
   definition_ = std::move(out.bytes());
@@ -48,15 +58,26 @@ void Recording::add(std::span<const Pose> poses, std::uint64_t state_hash) {
 }
 
 void Recording::add_fragment_state(std::uint32_t fragment, FragmentState state) {
-  changes_.push_back({hashes_.size(), fragment, state});
+  fragment_changes_.push_back({hashes_.size(), fragment, state});
 }
 
-void Recording::apply_fragment_states(std::size_t step, Simulation& sim) const {
-  const auto first = std::lower_bound(changes_.begin(), changes_.end(), step,
-                                      [](const FragmentChange& change, std::size_t at) { return change.step < at; });
+void Recording::add_node_force(std::uint32_t node, const Vec3& force) {
+  force_changes_.push_back({hashes_.size(), node, force});
+}
+
+void Recording::apply_changes(std::size_t step, Simulation& sim) const {
   try {
-    for (auto change = first; change != changes_.end() && change->step == step; ++change) {
-      sim.set_fragment_state(change->fragment, change->state);
+    for (const FragmentChange& change : before_step(fragment_changes_, step)) {
+      sim.set_fragment_state(change.fragment, change.state);
+    }
+    if (const auto changes = before_step(force_changes_, step); !changes.empty()) {
+      VecArray forces(sim.mesh().node_count());
+      for (std::size_t node = 0; node < forces.size(); ++node) forces.set(node, sim.node_forces()[node]);
+      for (const ForceChange& change : changes) {
+        if (change.node >= forces.size()) throw Error(Code::corrupt, "there is no node " + std::to_string(change.node));
+        forces.set(change.node, change.force);
+      }
+      sim.set_node_forces(forces);
     }
   } catch (const Error& error) {
     throw Error(Code::corrupt, "recording, before step " + std::to_string(step) + ": " + error.what());
@@ -83,9 +104,14 @@ void Recording::save(const std::filesystem::path& path) const {
   out.put(static_cast<std::uint64_t>(hashes_.size()));
   for (const Pose& pose : poses_) put(out, pose);
   for (const std::uint64_t hash : hashes_) out.put(hash);
-  out.put(static_cast<std::uint64_t>(changes_.size()));
-  for (const FragmentChange& change : changes_) {
+  out.put(static_cast<std::uint64_t>(fragment_changes_.size()));
+  for (const FragmentChange& change : fragment_changes_) {
     out.put(change.step), out.put(change.fragment), out.put(static_cast<std::uint8_t>(change.state));
+  }
+  out.put(static_cast<std::uint64_t>(force_changes_.size()));
+  for (const ForceChange& change : force_changes_) {
+    out.put(change.step), out.put(change.node);
+    for (int axis = 0; axis < 3; ++axis) out.put(change.force[axis]);
   }
   out.put(checksum(out.bytes()));
   write_bytes(path, out.bytes());
@@ -114,24 +140,41 @@ Recording Recording::load(const std::filesystem::path& path) {
   recording.tool_count_ = static_cast<std::size_t>(tools);
   for (std::uint64_t i = 0; i < tools * steps; ++i) recording.poses_.push_back(get_pose(in));
   for (std::uint64_t i = 0; i < steps; ++i) recording.hashes_.push_back(in.get<std::uint64_t>());
-  const auto changes = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < changes; ++i) {
+  recording.load_fragment_changes(in, name);
+  recording.load_force_changes(in, name);
+  return recording;
+}
+
+void Recording::load_fragment_changes(ByteReader& in, const std::string& name) {
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
     const auto step = in.get<std::uint64_t>();
     const auto fragment = in.get<std::uint32_t>();
     const auto state = in.get<std::uint8_t>();
-    const std::uint64_t before = recording.changes_.empty() ? 0 : recording.changes_.back().step;
-    if (step < before || step > steps || state > static_cast<std::uint8_t>(FragmentState::removed)) {
+    const std::uint64_t before = fragment_changes_.empty() ? 0 : fragment_changes_.back().step;
+    if (step < before || step > hashes_.size() || state > static_cast<std::uint8_t>(FragmentState::removed)) {
       throw Error(Code::corrupt, name + " holds an impossible change of a fragment");
     }
-    recording.changes_.push_back({step, fragment, static_cast<FragmentState>(state)});
+    fragment_changes_.push_back({step, fragment, static_cast<FragmentState>(state)});
   }
-  return recording;
+}
+
+void Recording::load_force_changes(ByteReader& in, const std::string& name) {
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    const auto step = in.get<std::uint64_t>();
+    const auto node = in.get<std::uint32_t>();
+    const auto x = in.get<double>(), y = in.get<double>(), z = in.get<double>();
+    const std::uint64_t before = force_changes_.empty() ? 0 : force_changes_.back().step;
+    if (step < before || step > hashes_.size()) {
+      throw Error(Code::corrupt, name + " holds an impossible change of a node's force");
+    }
+    force_changes_.push_back({step, node, {x, y, z}});
+  }
 }
 
 std::optional<std::size_t> replay(const Recording& recording, Simulation& sim,
                                   const std::function<bool(const Simulation&)>& after_step) {
   for (std::size_t step = 0; step < recording.step_count(); ++step) {
-    recording.apply_fragment_states(step, sim);
+    recording.apply_changes(step, sim);
     sim.step(recording.poses(step));
     if (sim.state_hash() != recording.state_hash(step)) return step;
     if (after_step && !after_step(sim)) break;

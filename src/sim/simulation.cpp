@@ -18,6 +18,8 @@ std::uint64_t hash_definition(const SimulationDef& def) {
 }
 
 void check_settings(const SimulationDef& def) {
+  for (const Tool& tool : def.tools) check(tool);
+  check(def.ball_friction);
   if (!is_finite(def.gravity)) throw Error(Code::invalid_value, "gravity is not finite");
   if (def.step.iterations < 1 || def.step.iterations > 1000) {
     throw Error(Code::out_of_range, "step.iterations must lie in [1, 1000], is " + std::to_string(def.step.iterations));
@@ -31,13 +33,6 @@ void check_settings(const SimulationDef& def) {
 SimulationDef checked(SimulationDef def) {
   check_settings(def);
   return def;
-}
-
-// Eq (5) sees gravity as a constant force on each node.
-VecArray weights(const SpringNetwork& network, const Vec3& gravity) {
-  VecArray forces(network.node_count());
-  for (std::size_t i = 0; i < network.node_count(); ++i) forces.set(i, network.masses[i] * gravity);
-  return forces;
 }
 
 // Substeps in which a cut spring still pulls: that in which it is found too long and those after.
@@ -75,29 +70,40 @@ Simulation::Simulation(SimulationDef def)
       reference_energy_(reference_energy(network_)),
       fade_substeps_(fade_substeps(def_.step, coefficients_)),
       solver_(NetworkSolver::make(network_, coefficients_, def_.mesh.positions, solver_settings(def_, fade_substeps_))),
-      contacts_(def_.tools, def_.walls, network_.fixed, def_.step.contact_rule),
+      contacts_(def_.tools, def_.walls, network_.fixed, def_.step.contact_rule, def_.attachments,
+                def_.step.surface_samples ? SurfaceSamples(def_.mesh) : SurfaceSamples()),
+      balls_(make_balls()),
+      ball_positions_(network_.node_count()),
+      ball_velocities_(network_.node_count()),
+      ball_fragments_(network_.node_count()),
       stiffnesses_(network_.stiffnesses),
-      external_(weights(network_, def_.gravity)),
+      node_forces_(network_.node_count()),
+      external_(network_.node_count()),
       intact_(network_.spring_count(), 1),
       new_cuts_(network_.spring_count()),
-      start_poses_(def_.tools.size()),
+      start_poses_(holder_count()),
+      marks_(network_.node_count()),
       fragments_(network_.node_count(), network_.springs),
       fragment_states_(network_.node_count()),
+      loose_first_(network_.node_count() + 1),
+      loose_nodes_(network_.node_count()),
+      loose_group_of_(network_.node_count()),
       is_debris_(network_.node_count()),
       event_log_(network_.node_count(), event_capacity(network_)),
-      wrenches_(def_.tools.size()),
-      history_(def_.tools.size()) {
+      wrenches_(holder_count()),
+      history_(holder_count()) {
   positions_ = velocities_ = before_solve_ = VecArray(network_.node_count());
-  solver_->set_external(external_);
+  apply_node_forces();
   fading_.reserve(network_.spring_count());
   debris_.reserve(network_.node_count());
   counters_.guarded_nodes = coefficients_.guarded_nodes;
+  regroup(0, {});
 }
 
 bool Simulation::accept(std::span<const Pose> poses) noexcept {
   event_log_.begin_step(info_.step, end_of_step());  // a refused step has no events
   if (info_.status == Code::diverged) return false;
-  const bool good = poses.size() == def_.tools.size() && std::all_of(poses.begin(), poses.end(), is_valid);
+  const bool good = poses.size() == holder_count() && std::all_of(poses.begin(), poses.end(), is_valid);
   info_.status = good ? Code{} : Code::bad_pose;
   if (good) return true;
   ++counters_.bad_poses;
@@ -144,7 +150,7 @@ void Simulation::finish_step() noexcept {
   log_contacts();
   counters_.dropped_events += event_log_.dropped();
   if (coefficients_.guarded_nodes > 0) info_.flags |= kGuarded;
-  for (std::size_t tool = 0; tool < def_.tools.size(); ++tool) {
+  for (std::size_t tool = 0; tool < holder_count(); ++tool) {
     if (contacts_.jumped(tool)) info_.flags |= kToolJumped, ++counters_.tool_jumps;
     if (!contacts_.engaged(tool)) info_.flags |= kContactSuspended;
   }
@@ -185,6 +191,7 @@ VecArray Simulation::forces() const {
 
 void Simulation::reset() noexcept {
   solver_->reset();
+  clear_node_forces();
   forget_copies();
   stiffnesses_ = network_.stiffnesses;
   std::fill(intact_.begin(), intact_.end(), std::uint8_t{1});
@@ -200,6 +207,8 @@ void Simulation::reset() noexcept {
   counters_ = {};
   counters_.guarded_nodes = coefficients_.guarded_nodes;
   event_log_.restart(0, {});
+  if (balls_) balls_->reset();
+  regroup(0, {});
 }
 
 }  // namespace crumble

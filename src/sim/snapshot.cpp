@@ -7,7 +7,7 @@
 namespace crumble {
 namespace {
 
-constexpr std::uint64_t kSnapshotMagic = 0x3330504e534d5243u;  // "CRMSNP" and the version, "03"
+constexpr std::uint64_t kSnapshotMagic = 0x3430504e534d5243u;  // "CRMSNP" and the version, "04"
 constexpr std::uint64_t kNameOfMagic = 0x0000ffffffffffffu;
 constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 53;  // a double, which the time is, counts no further
 
@@ -65,6 +65,8 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
                            ledger_.gain_max_relative}) {
     out.put(row);
   }
+  out.put(static_cast<std::uint8_t>(has_node_forces()));
+  if (has_node_forces()) out.put(node_forces_.x), out.put(node_forces_.y), out.put(node_forces_.z);
   solver_->save(out);
   out.put(intact_);
   out.put(static_cast<std::uint64_t>(fading_.size()));
@@ -77,8 +79,20 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
   contacts_.save(out);
   fragments_.save(out);
   for (std::uint32_t f = 0; f < fragments_.count(); ++f) out.put(static_cast<std::uint8_t>(fragment_states_[f]));
+  if (balls_) balls_->save(out);
   out.put(checksum(out.bytes()));
   return std::move(out.bytes());
+}
+
+void Simulation::load_node_forces(ByteReader& in) {
+  if (in.get<std::uint8_t>() == 0) return clear_node_forces();
+  VecArray forces;
+  for (std::vector<double>* axis : {&forces.x, &forces.y, &forces.z}) {
+    *axis = in.get_vector<double>();
+    require(axis->size() == network_.node_count(), "number of node forces");
+  }
+  for (std::size_t node = 0; node < forces.size(); ++node) require(is_finite(forces[node]), "node force");
+  set_node_forces(forces);
 }
 
 // The stiffnesses in force follow from what is intact and what is fading.
@@ -124,6 +138,7 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
                       &ledger.gain_max_relative}) {
     *row = in.get<double>();
   }
+  next.load_node_forces(in);
   next.solver_->load(in);
   next.forget_copies();
   next.intact_ = in.get_vector<std::uint8_t>();
@@ -143,6 +158,8 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
   }
   next.contacts_.load(in);
   next.load_fragments(in);
+  if (next.balls_) next.balls_->load(in);
+  next.regroup(next.last_step(), {});
   next.event_log_.restart(next.info_.step, next.contacts_.constraints());
   if (def_.step.energy_audit) next.ledger_.stored = next.stored_energy();
   take_state(next);
@@ -152,7 +169,12 @@ void Simulation::restore(std::span<const std::uint8_t> bytes) {
 void Simulation::take_state(Simulation& from) noexcept {
   solver_ = std::move(from.solver_);
   contacts_ = std::move(from.contacts_);
+  balls_ = std::move(from.balls_);
+  ball_fragments_ = std::move(from.ball_fragments_);
+  regroup_at_ = from.regroup_at_;
   stiffnesses_ = std::move(from.stiffnesses_);
+  node_forces_ = std::move(from.node_forces_);
+  external_ = std::move(from.external_);
   intact_ = std::move(from.intact_);
   new_cuts_ = std::move(from.new_cuts_);
   fading_ = std::move(from.fading_);
@@ -198,6 +220,10 @@ std::uint64_t Simulation::state_hash() const noexcept {
   solver_->add_to(hash);
   hash.add(std::span<const std::uint8_t>(intact_));
   for (const Fading& fading : fading_) hash.add(std::uint64_t{fading.spring} << 32 | fading.substeps_left);
+  if (has_node_forces()) {
+    for (const auto* axis : {&node_forces_.x, &node_forces_.y, &node_forces_.z})
+      hash.add(std::span<const double>(*axis));
+  }
   for (const NodeConstraint& c : contacts_.constraints()) {
     hash.add(std::uint64_t{c.node} << 32 | c.holder);
     hash.add(static_cast<std::uint64_t>(c.state));
@@ -207,6 +233,7 @@ std::uint64_t Simulation::state_hash() const noexcept {
     for (int axis = 0; axis < 3; ++axis) hash.add(w.force[axis]), hash.add(w.torque[axis]);
   }
   fragments_.add_to(hash);
+  if (balls_) balls_->add_to(hash);
   for (std::uint32_t f = 0; f < fragments_.count(); ++f) hash.add(static_cast<std::uint64_t>(fragment_states_[f]));
   return hash.value();
 }

@@ -44,6 +44,9 @@ const StepInfo& Simulation::step(std::span<const Pose> poses) noexcept {
     if (def_.step.energy_audit) audit_projection(), laps.skip();
 
     for (std::uint32_t iteration = 0; iteration < def_.step.iterations; ++iteration) {
+      touch_fragments();
+      laps.end(profile_.touch_fragments);
+
       // (3) the network finds its new positions, Eqs (3) to (5), and on the way the springs that are too long, Eq (8)
       solve_network();
       laps.end(profile_.solve_network);
@@ -54,6 +57,11 @@ const StepInfo& Simulation::step(std::span<const Pose> poses) noexcept {
       laps.end(profile_.cut_springs);
       if (def_.step.energy_audit) audit_cut(), laps.skip();
     }
+
+    // no step ends with a node inside a tool
+    contacts_.push_out(*solver_);
+    laps.end(profile_.project_contacts);
+    if (def_.step.energy_audit) audit_projection(), laps.skip();
   }
   track_fragments();
   laps.end(profile_.cut_springs);
@@ -71,7 +79,7 @@ void Simulation::move_tools(std::span<const Pose> poses, std::uint32_t substep) 
   for (std::size_t tool = 0; tool < poses.size(); ++tool) {
     const Pose target = renormalized(poses[tool]);
     const Pose here = substep == coefficients_.substeps ? target : interpolate(start_poses_[tool], target, progress);
-    contacts_.move_tool(tool, here, coefficients_.substep);
+    contacts_.move_holder(tool, here, coefficients_.substep);
   }
 }
 
@@ -89,6 +97,7 @@ void Simulation::cut_springs() noexcept {
   const std::uint32_t before = info_.new_cuts;
   info_.new_cuts += static_cast<std::uint32_t>(
       crumble::cut_springs(solver_->overlong(), intact_, std::span(new_cuts_).subspan(before)));
+  contacts_.note_cut(new_cuts().subspan(before));
   fade_cut_springs();
   for (const std::uint32_t spring : new_cuts().last(info_.new_cuts - before)) {
     log_cut(spring);

@@ -84,6 +84,15 @@ TEST_F(BadInput, NumbersOutOfRange) {
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::mean_force, 2u, "mean_force");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::precision, 2u, "precision must be at most 1, is 2");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::precision, 7u, "precision");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::cut_test, 2u, "cut_test must be at most 1, is 2");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::drag_frame, 2u, "drag_frame must be at most 1, is 2");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::surface_samples, 2u, "surface_samples");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::ball_contact, 2u, "ball_contact");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::ball_static_friction, 0.1, "friction.static 0.1");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::ball_dynamic_friction, -1.0, "friction.dynamic");
+  expect_field(CRUMBLE_E_INVALID_VALUE, &crumble_sim_def::ball_dynamic_friction, kNan, "friction.dynamic");
+  expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::spring_damping, -1.0, "spring_damping");
+  expect_field(CRUMBLE_E_INVALID_VALUE, &crumble_sim_def::spring_damping, kInfinity, "spring_damping");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::threads, 0u, "threads must lie in [1, 64], is 0");
   expect_field(CRUMBLE_E_OUT_OF_RANGE, &crumble_sim_def::threads, 65u, "threads must lie in [1, 64], is 65");
   expect_field(CRUMBLE_E_UNSUPPORTED, &crumble_sim_def::kernel, "abacus", "kernel 'abacus'");
@@ -184,13 +193,41 @@ TEST_F(BadInput, Tools) {
   bad.radius = 0, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"crumble_sim_add_tool", "radius"}), bad = tool;
   bad.length = kNan, expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {"length"}), bad = tool;
   bad.sides = 2, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"sides", "2"}), bad = tool;
-  bad.shape = 3, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"shape", "3"}), bad = tool;
+  bad.shape = 8, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"shape", "8"}), bad = tool;
+  bad.auto_orient = 2, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"auto_orient", "2"}), bad = tool;
+  bad.reserved_2 = 1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"reserved_2", "1"}), bad = tool;
+  bad.offset.position[1] = kNan, expect_tool(CRUMBLE_E_BAD_POSE, bad, {"offset"}), bad = tool;
+  bad.offset.orientation[0] = 0, expect_tool(CRUMBLE_E_BAD_POSE, bad, {"offset"}), bad = tool;
   bad.static_friction = kNan, expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {"friction.static"}), bad = tool;
   bad.dynamic_friction = -1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"friction.dynamic"}), bad = tool;
   bad.static_friction = 1, bad.dynamic_friction = 2;
   expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"friction.static"}), bad = tool;
   bad.shape = CRUMBLE_TOOL_BAR;
   bad.size[0] = -1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"size.x"});
+}
+
+TEST_F(BadInput, ToolsOfTheOtherKinds) {
+  crumble_tool_def bad = tool;
+  bad.shape = CRUMBLE_TOOL_BALL;
+  bad.radius = -1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"radius", "-1"}), bad = tool;
+  bad.shape = CRUMBLE_TOOL_CAPSULE;
+  bad.length = -1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"length", "-1"}), bad = tool;
+  bad.shape = CRUMBLE_TOOL_CONE;
+  bad.length = kInfinity, expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {"height"}), bad = tool;
+  bad.shape = CRUMBLE_TOOL_BLADE;
+  bad.bevel = 0.007, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"bevel", "0.007"});
+  bad.bevel = kNan, expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {"bevel"});
+  bad.bevel = -1, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"bevel", "-1"});
+  bad.bevel = 0, bad.size[1] = 0, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"size.y"}), bad = tool;
+  bad.shape = CRUMBLE_TOOL_SUPPORT;
+  expect_tool(CRUMBLE_E_NULL, bad, {"support"});
+  bad.support = [](void*, const double*, double* point) { point[0] = kNan; };
+  expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {});
+  bad.support = [](void*, const double d[3], double* point) {
+    for (int axis = 0; axis < 3; ++axis) point[axis] = 0.01 * d[axis];
+  };
+  bad.inside[1] = kNan, expect_tool(CRUMBLE_E_INVALID_VALUE, bad, {"inside"});
+  bad.inside[1] = 0.02, expect_tool(CRUMBLE_E_OUT_OF_RANGE, bad, {"inside"});
 }
 
 TEST_F(BadInput, ToolMeshes) {
@@ -218,12 +255,10 @@ TEST_F(BadInput, ToolMeshes) {
   expect(CRUMBLE_E_MESH, vertices, {0, 2, 1, 0, 1, 3, 0, 3, 2}, {"3 triangles"});
   expect(CRUMBLE_E_MESH, vertices, with(triangles, 7, 4u), {"triangle 2", "vertex 4"});
   expect(CRUMBLE_E_MESH, with(vertices, 8, kNan), triangles, {"vertex 2"});
-  expect(CRUMBLE_E_MESH, with(vertices, 3, 0.0), triangles, {"triangle 0"});
-  expect(CRUMBLE_E_MESH_ORIENTATION, vertices, {2, 0, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, {"oriented"});
+  expect(CRUMBLE_E_MESH, with(vertices, 3, 0.0), triangles, {"fewer than 4"});
+  expect(CRUMBLE_E_MESH_ORIENTATION, vertices, {2, 0, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, {"flipped"});
   expect(CRUMBLE_E_MESH_ORIENTATION, vertices, {2, 0, 1, 1, 0, 3, 3, 0, 2, 2, 1, 3}, {"inward"});
-  expect(CRUMBLE_E_MESH_OPEN, vertices, {0, 2, 1, 0, 1, 3, 0, 3, 2, 0, 2, 1}, {"closed"});
-  const Vertices dented{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.2, 0.2, 0.2};
-  expect(CRUMBLE_E_MESH_NONCONVEX, dented, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}, {"convex"});
+  expect(CRUMBLE_E_MESH_OPEN, vertices, {0, 2, 1, 0, 1, 3, 0, 3, 2, 0, 2, 1}, {"open"});
   crumble_tool_def bad = tool;
   bad.shape = CRUMBLE_TOOL_MESH;
   bad.vertex_count = 4, bad.triangle_count = 4;
@@ -249,6 +284,40 @@ TEST_F(BadInput, WallsAndFixedNodes) {
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_fix_nodes(sim, nodes, 1));
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_fix_nodes(sim, nullptr, 0));
   expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_sim_fix_below(sim, kNan), {"height", "nan"});
+
+  const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, none[3] = {0, kNan, 0}, up[3] = {0, 1, 0},
+               long_up[3] = {0, 2, 0};
+  expect_failure(CRUMBLE_E_NULL, crumble_sim_fix_box(sim, nullptr, high), {"low"});
+  expect_failure(CRUMBLE_E_NULL, crumble_sim_fix_box(sim, low, nullptr), {"high"});
+  expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_sim_fix_box(sim, low, none), {"high.y"});
+  expect_failure(CRUMBLE_E_OUT_OF_RANGE, crumble_sim_fix_box(sim, high, low), {"low.x", "1"});
+  expect_failure(CRUMBLE_E_NULL, crumble_sim_fix_plane(sim, nullptr, 0), {"normal"});
+  expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_sim_fix_plane(sim, none, 0), {"normal.y"});
+  expect_failure(CRUMBLE_E_OUT_OF_RANGE, crumble_sim_fix_plane(sim, long_up, 0), {"normal", "2"});
+  expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_sim_fix_plane(sim, up, kInfinity), {"offset"});
+}
+
+TEST_F(BadInput, Attachments) {
+  const std::uint32_t top = cube.node_count() - 1;
+  const std::uint32_t nodes[] = {top, cube.node_count()}, fixed[] = {0}, twice[] = {top, top};
+  std::uint32_t index = 99;
+  const auto expect = [&](crumble_result expected, const std::uint32_t* list, std::uint32_t count,
+                          const std::vector<std::string>& words) {
+    expect_failure(expected, crumble_sim_add_attachment(sim, list, count, &index), words);
+    EXPECT_EQ(index, 99u);
+    EXPECT_RESULT(CRUMBLE_OK, crumble_sim_step(sim, &kPose, &wrench));  // it has none
+    EXPECT_RESULT(CRUMBLE_OK, crumble_sim_reset(sim));
+  };
+  expect(CRUMBLE_E_NULL, nullptr, 1, {"crumble_sim_add_attachment", "nodes"});
+  expect(CRUMBLE_E_EMPTY, nullptr, 0, {"nodes"});
+  expect(CRUMBLE_E_OUT_OF_RANGE, nodes, 2, {std::to_string(nodes[1])});
+  expect(CRUMBLE_E_OUT_OF_RANGE, nodes, cube.node_count() + 1, {"count"});
+  expect(CRUMBLE_E_STATE, fixed, 1, {"fixed"});
+  expect(CRUMBLE_E_STATE, twice, 2, {"attached already"});
+  ASSERT_OK(crumble_sim_add_attachment(sim, nodes, 1, &index));
+  EXPECT_EQ(index, 0u);
+  expect_failure(CRUMBLE_E_STATE, crumble_sim_add_attachment(sim, nodes, 1, &index), {"attached already"});
+  expect_failure(CRUMBLE_E_OUT_OF_RANGE, crumble_sim_step(sim, &kPose, &wrench), {"tool_count is 1", "has 2"});
 }
 
 TEST_F(BadInput, NullPointers) {
@@ -304,6 +373,11 @@ TEST_F(BadInput, SetUpAfterTheFirstStep) {
   EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_add_wall(sim, &wall));
   EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_fix_nodes(sim, nullptr, 0));
   EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_fix_below(sim, 0));
+  const std::uint32_t node = cube.node_count() - 1;
+  const double corner[3] = {0, 0, 0}, up[3] = {0, 1, 0};
+  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_fix_box(sim, corner, corner));
+  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_fix_plane(sim, up, 0));
+  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_add_attachment(sim, &node, 1, nullptr));
   EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_apply_paper_preset(sim));
   EXPECT_EQ(hash(), before);
   ASSERT_OK(crumble_sim_reset(sim));

@@ -81,6 +81,9 @@ class Handles : public CapiTest {
     crumble_reader reader = nullptr;
     std::uint64_t bytes = 0;
     std::uint32_t count = 0;
+    crumble_local_model model{};
+    double drag = 0;
+    const double force[3] = {0, 0, 0};
     const crumble_result results[] = {crumble_sim_get_def(handle, &some_def),
                                       crumble_sim_configure(handle, &some_def),
                                       crumble_sim_add_tool(handle, &some_tool, nullptr),
@@ -102,6 +105,11 @@ class Handles : public CapiTest {
                                       crumble_sim_get_fragment_state(handle, 0, &count),
                                       crumble_sim_find_debris(handle, 1, 0, &view),
                                       crumble_sim_publish(handle),
+                                      crumble_sim_get_contacts(handle, nullptr, 0, &count),
+                                      crumble_sim_get_local_model(handle, 0, &model),
+                                      crumble_sim_get_held_drag(handle, 0, &drag),
+                                      crumble_sim_set_node_forces(handle, nullptr, 0),
+                                      crumble_sim_set_node_force(handle, 0, force),
                                       crumble_reader_create(handle, nullptr, &reader),
                                       crumble_sim_snapshot(handle, nullptr, 0, &bytes),
                                       crumble_sim_restore(handle, &node, sizeof node),

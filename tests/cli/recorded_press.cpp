@@ -8,7 +8,7 @@ namespace crumble::cli {
 
 Simulation record_press(const std::string& name, double speed, const std::string& recording) {
   const Scene scene = load_scene(name, Preset::standard);
-  PressOptions press = scene.press;
+  PressOptions press = scene.motions[0].press;
   press.speed = speed;
   const auto device = open_press(press, scene.def.step.tau);
   Simulation sim(scene.def);

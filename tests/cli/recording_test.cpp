@@ -20,7 +20,7 @@ using render::TemporaryFolder;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kStepBytes = 7 * 8;  // a pose
-constexpr std::size_t kTail = 8 + 8;       // the number of the host's changes to fragments, none; the checksum
+constexpr std::size_t kTail = 8 + 8 + 8;   // the numbers of changes to fragments and to forces, none; the checksum
 
 class RecordingTest : public testing::Test {
  protected:

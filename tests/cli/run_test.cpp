@@ -213,6 +213,39 @@ TEST(Run, WritesEveryFileIntoAFolderItMakes) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out), {}), 10);
 }
 
+TEST(Run, TellsTheForceOnEachTool) {
+  const TemporaryFolder folder;
+  const std::filesystem::path out = folder.file("out");
+  const json result = run_json({"tofu_two_tools", "--seconds", "1", "--out", out.string()});
+  EXPECT_EQ(result.at("device"), "scripted path, scripted path");
+  ASSERT_EQ(result.at("other_tools").size(), 1u);
+  const json& other = result.at("other_tools")[0];
+  ASSERT_EQ(other.at("force").size(), 1001u);
+  EXPECT_LT(result.at("force").back().at("force_n")[0], -0.05) << "the left one is pushed back";
+  EXPECT_GT(other.at("force").back().at("force_n")[0], 0.05) << "the right one too";
+  EXPECT_NEAR(other.at("peak_force_n").get<double>(), result.at("peak_force_n").get<double>(), 0.05);
+  EXPECT_TRUE(run_json({"tofu_cube", "--seconds", "0.1"}).at("other_tools").empty());
+  const std::string table = read_text(out / "force.csv");
+  EXPECT_EQ(table.find("time_s,depth_mm,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,depth_2_mm,fx_2_n,fy_2_n,fz_2_n,tx_2_nm,"
+                       "ty_2_nm,tz_2_nm,cuts\n"),
+            0u);
+  EXPECT_TRUE(std::filesystem::exists(out / "force_2.svg"));
+  EXPECT_EQ(crumble({"replay", (out / "experiment.crec").string()}).code, 0);
+}
+
+TEST(Run, FollowsPathsAndTakesEveryOtherScene) {
+  for (const char* scene : {"tofu_drop", "tofu_crush", "tofu_knife", "tofu_needle"}) {
+    SCOPED_TRACE(scene);
+    const json result = run_json({scene, "--seconds", "0.3"});
+    EXPECT_EQ(result.at("steps"), 301);
+    EXPECT_EQ(result.at("counters").at("suspended_steps"), 0);
+    EXPECT_LE(result.at("energy_gain_max_relative"), 1e-8);
+  }
+  // down by 24 mm in 2.7 s, from 1 mm above
+  const json crush = run_json({"tofu_crush", "--seconds", "0.27"});
+  EXPECT_GT(crush.at("force").back().at("depth_mm"), 1.4);
+}
+
 TEST(Run, ReadsSceneFiles) {
   const TemporaryFolder folder;
   write_text(folder.file("box.json"), R"({

@@ -10,6 +10,7 @@
 
 namespace crumble {
 
+inline constexpr double kFar = 1e9;   // metres
 inline constexpr double kTau = 1e-3;  // seconds
 inline constexpr Friction kPaperFriction{3.0, 1.5};
 
@@ -73,13 +74,13 @@ struct ContactRig {
   /// Puts the tools down while the nodes are elsewhere, so that they are engaged wherever the nodes are.
   void engage(const std::vector<Pose>& poses) {
     NodeArrays elsewhere = far_away(nodes.node_count());
-    for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_tool(t, poses[t], kTau);
+    for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_holder(t, poses[t], kTau);
     contacts.find(0, elsewhere);
   }
 
   /// Stages 1 and 2.
   void touch(const std::vector<Pose>& poses) noexcept {
-    for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_tool(t, poses[t], kTau);
+    for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_holder(t, poses[t], kTau);
     for (std::uint32_t place = 0; place < contacts.place_count(); ++place) {
       contacts.find(place, nodes);
       contacts.project(nodes);
@@ -104,9 +105,8 @@ struct ContactRig {
     const Frame frame(contacts.pose(tool));
     double greatest = -1;
     for (std::size_t i = 0; i < nodes.node_count(); ++i) {
-      std::uint32_t face = 0;
-      greatest = std::max(
-          greatest, -greatest_plane_distance(contacts.tools()[tool].shape, frame.to_local(nodes.positions[i]), face));
+      const Vec3 local = frame.to_local(nodes.positions[i]);
+      greatest = std::max(greatest, -contacts.tools()[tool].shape->nearest(local, kFar).signed_distance);
     }
     return greatest;
   }

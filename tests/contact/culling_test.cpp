@@ -61,7 +61,7 @@ class Culling : public testing::TestWithParam<ContactRule> {
                                    Random& random) {
     std::uint32_t node = kCloud;
     for (std::size_t t = 0; t < poses.size(); ++t) {
-      for (const Vec3& corner : culled.contacts.tools()[t].shape.vertices) {
+      for (const Vec3& corner : culled.contacts.tools()[t].shape->surface().vertices) {
         const Vec3 p = Frame(poses[t]).to_scene(corner * (1 - 1e-15 * random.uniform(-1, 2)));
         if (!culled.contact_of(node)) culled.nodes.positions.set(node, p), plain.nodes.positions.set(node, p);
         ++node;

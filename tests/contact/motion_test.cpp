@@ -105,7 +105,7 @@ TEST(ToolMotion, FastThinToolDoesNotPassItsNodes) {
     const Tool tool = bar(0.003, 0.01, 0.05);
     const Pose start = random_pose(random);
     const Frame frame(start);
-    const double per_step = random.uniform(0.1, 7.9) * tool.shape.half_thickness;
+    const double per_step = random.uniform(0.1, 7.9) * tool.shape->half_thickness();
     std::vector<Vec3> nodes;
     for (int i = 0; i < 20; ++i) {  // farther from the sides than the depth that one place can bring
       nodes.push_back(frame.to_scene(
@@ -134,7 +134,7 @@ TEST(ToolMotion, FastRoundStickMeetsWhatIsOnItsWay) {
     const Tool tool{make_round_stick(0.004, 0.05, 16), kPaperFriction};
     const Pose start = random_pose(random);
     const Frame frame(start);
-    const double per_step = random.uniform(0.1, 7.9) * tool.shape.half_thickness;
+    const double per_step = random.uniform(0.1, 7.9) * tool.shape->half_thickness();
     std::vector<Vec3> nodes;
     for (int i = 0; i < 50; ++i) {  // where its chord is longer than a place
       nodes.push_back(
@@ -204,7 +204,7 @@ class WanderingStick {
   }
   double greatest_travel(const Pose& before) const {
     double greatest = 0;
-    for (const Vec3& v : rig_.contacts.tools()[0].shape.vertices) {
+    for (const Vec3& v : rig_.contacts.tools()[0].shape->surface().vertices) {
       greatest = std::max(greatest, norm(Frame(pose_).to_scene(v) - Frame(before).to_scene(v)));
     }
     return greatest;

@@ -141,9 +141,10 @@ TEST(ContactSnapshot, EveryTruncationIsCorrupt) {
 }
 
 // Where the fields of snapshot.cpp lie.
-constexpr std::size_t kToolBytes = 7 * 8 + 1, kCountAt = 2 * kToolBytes, kFirstContact = kCountAt + 8;
-constexpr std::size_t kStateAt = 8, kPointAt = 9, kFaceAt = 9 + 9 * 8, kAnchorAt = kFaceAt + 4,
-                      kContactBytes = kAnchorAt + 3 * 8;
+constexpr std::size_t kToolBytes = 7 * 8 + 1, kCutAt = 2 * kToolBytes, kCountAt = kCutAt + 8,
+                      kFirstContact = kCountAt + 8;
+constexpr std::size_t kStateAt = 8, kPointAt = 9 + 8, kNormalAt = kPointAt + 3 * 8, kWallAt = kPointAt + 9 * 8,
+                      kFaceAt = kWallAt + 4, kAnchorAt = kFaceAt + 4, kContactBytes = kAnchorAt + 6 * 8;
 
 template <class T>
 void put_at(std::vector<std::uint8_t>& bytes, std::size_t offset, T value) {
@@ -170,10 +171,18 @@ TEST(ContactSnapshot, ImpossibleValuesAreCorrupt) {
   EXPECT_EQ(damaged(kFirstContact, std::uint32_t{10}), Code::corrupt) << "fixed node";
   EXPECT_EQ(damaged(kFirstContact + 4, std::uint32_t{2}), Code::corrupt) << "holder";
   EXPECT_EQ(damaged(kFirstContact + kStateAt, std::uint8_t{3}), Code::corrupt) << "released";
-  EXPECT_EQ(damaged(kFirstContact + kStateAt, std::uint8_t{4}), Code::corrupt) << "state";
+  EXPECT_EQ(damaged(kFirstContact + kStateAt, std::uint8_t{4}), Code::corrupt) << "attached";
+  EXPECT_EQ(damaged(kFirstContact + kStateAt, std::uint8_t{5}), Code::corrupt) << "state";
   for (std::size_t k = 0; k < 9; ++k) EXPECT_EQ(damaged(kFirstContact + kPointAt + 8 * k, nan), Code::corrupt) << k;
-  EXPECT_EQ(damaged(kFirstContact + kFaceAt, std::uint32_t{18}), Code::corrupt) << "face of the round stick";
-  EXPECT_EQ(damaged(kFirstContact + kAnchorAt, nan), Code::corrupt) << "anchor";
+  EXPECT_EQ(damaged(kFirstContact + kFaceAt, std::uint32_t{0}), Code::corrupt) << "face of a body without a surface";
+  EXPECT_EQ(damaged(kFirstContact + kNormalAt, 1.5), Code::corrupt) << "normal that is no unit vector";
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(damaged(kFirstContact + kAnchorAt + 8 * k, nan), Code::corrupt) << k;
+  EXPECT_EQ(damaged(kFirstContact + kAnchorAt + 24, 1.5), Code::corrupt) << "normal in the tool's frame";
+  for (const std::uint32_t wall : {1u, 2u}) {
+    std::vector<std::uint8_t> bytes = good;
+    put_at(bytes, kFirstContact + 4, kWorldHolder), put_at(bytes, kFirstContact + kWallAt, wall);
+    EXPECT_EQ(code_of_load(bytes), wall == 2 ? std::optional(Code::corrupt) : std::nullopt);
+  }
   std::uint32_t first_node = 0;
   std::memcpy(&first_node, good.data() + kFirstContact, sizeof first_node);
   EXPECT_EQ(damaged(kFirstContact + kContactBytes, first_node), Code::corrupt) << "a node with two holders";

@@ -23,23 +23,6 @@ constexpr double kMaxMotion = 0.9;    // 0.51    0.44    0.51    0.72        0.5
 
 constexpr std::array<std::array<double, 3>, 3> kDirections{{{0.45, 0.5, 1}, {-1, 0.25, 0.35}, {0.1, 1, 0.2}}};
 
-struct Motion {
-  std::unique_ptr<Device> device;
-  Workspace workspace;
-  std::size_t steps;
-};
-
-Motion open_motion(const Scene& scene) {
-  const double tick = scene.def.step.tau * scene.def.step.iterations;
-  const auto steps = [&](double seconds) { return static_cast<std::size_t>(seconds / tick + 1.5); };
-  if (!scene.trajectory) {
-    return {open_press(scene.press, tick), Workspace(), steps(scene.press.depth / scene.press.speed)};
-  }
-  const double first = scene.replay.from.value_or(scene.trajectory->rows.front().time);
-  const double last = scene.replay.to.value_or(scene.trajectory->rows.back().time);
-  return {open_replay(*scene.trajectory, scene.replay, tick), Workspace(scene.workspace), steps(last - first)};
-}
-
 double mean_spring(const TetMesh& mesh) {
   double sum = 0;
   for (const auto& [a, b] : mesh.springs) sum += norm(mesh.positions[b] - mesh.positions[a]);
@@ -191,17 +174,19 @@ PopMeter::Pops PopMeter::add(const SurfaceExtractor& surface, VecView nodes) {
 }
 
 Report watch(const Scene& scene, const Options& options) {
-  Motion motion = open_motion(scene);
+  const double tick = scene.tick();
+  MotionDevice motion = open_motion(scene.motions[0], tick);
+  const auto steps = static_cast<std::size_t>(motion.seconds / tick + 1.5);
   Simulation sim(scene.def);
   Viewer viewer(sim, options);
   double due = 0;
   DeviceSample sample;
-  for (std::size_t step = 0; step < motion.steps; ++step) {
+  for (std::size_t step = 0; step < steps; ++step) {
     motion.device->read(sample);
     const Pose pose = motion.workspace.to_scene(sample.pose);
     const StepInfo& info = sim.step({&pose, 1});
     if (info.status != Code{}) throw Error(info.status, scene.name + " failed at step " + std::to_string(step));
-    const bool is_last = step + 1 == motion.steps;
+    const bool is_last = step + 1 == steps;
     if (info.time < due && !is_last) continue;
     due += kFramePeriod;
     viewer.look(is_last);

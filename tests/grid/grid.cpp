@@ -21,8 +21,8 @@ Press press(const Scene& scene, const Material& material, double tau, TimeStepPo
   def.step.tau = tau;
   def.step.policy = policy;
   Simulation sim(std::move(def));
-  const auto device = open_press(scene.press, tau);
-  const auto steps = static_cast<std::size_t>(scene.press.depth / scene.press.speed / tau) + 1;
+  const auto device = open_press(scene.motions[0].press, tau);
+  const auto steps = static_cast<std::size_t>(scene.motions[0].press.depth / scene.motions[0].press.speed / tau) + 1;
   DeviceSample sample;
   for (std::size_t step = 0; step < steps && sim.info().status == Code{}; ++step) {
     if (device->read(sample) == ReadStatus::ok) sim.step({&sample.pose, 1});

@@ -40,8 +40,8 @@ Bounds bounds(const std::vector<Vec3>& points) {
 }
 
 Bounds tool_bounds(const Scene& scene) {
-  std::vector<Vec3> points = scene.def.tools[0].shape.vertices;
-  for (Vec3& p : points) p = Frame(scene.start).to_scene(p);
+  std::vector<Vec3> points = scene.def.tools[0].shape->surface().vertices;
+  for (Vec3& p : points) p = Frame(scene.motions[0].start).to_scene(p);
   return bounds(points);
 }
 
@@ -98,7 +98,7 @@ TEST(BuiltInScenes, HoldThePapersSticks) {
     SCOPED_TRACE(paper.name);
     const Scene scene = load_scene(paper.name, Preset::standard);
     ASSERT_EQ(scene.def.tools.size(), 1u);
-    const ConvexPolyhedron& stick = scene.def.tools[0].shape;
+    const ConvexPolyhedron stick = make_convex(scene.def.tools[0].shape->surface());
     EXPECT_EQ(stick.planes.size(), 16u + 2u);
     for (const Vec3& v : stick.vertices) {
       EXPECT_NEAR(std::hypot(v.x(), v.y()), paper.stick_diameter / 2, 1e-12);
@@ -126,11 +126,11 @@ TEST(BuiltInScenes, PressDownAtOneMillimetrePerSecond) {
   for (const PaperScene& paper : kScenes) {
     SCOPED_TRACE(paper.name);
     const Scene scene = load_scene(paper.name, Preset::standard);
-    EXPECT_EQ(scene.press.speed, 1e-3);
-    EXPECT_EQ(scene.press.direction, Vec3(0, -1, 0));
-    EXPECT_EQ(scene.press.start.position, scene.start.position);
-    EXPECT_GT(scene.press.depth, 0.8 * scene.top);
-    EXPECT_LT(scene.press.depth, scene.top);
+    EXPECT_EQ(scene.motions[0].press.speed, 1e-3);
+    EXPECT_EQ(scene.motions[0].press.direction, Vec3(0, -1, 0));
+    EXPECT_EQ(scene.motions[0].press.start.position, scene.motions[0].start.position);
+    EXPECT_GT(scene.motions[0].press.depth, 0.8 * scene.top);
+    EXPECT_LT(scene.motions[0].press.depth, scene.top);
   }
 }
 
@@ -160,17 +160,18 @@ TEST(BuiltInScenes, TakeThePapersChoicesWhenAsked) {
 // The recorded hand comes from outside, and in the chosen window it reaches well into the cube.
 TEST(BuiltInScenes, BringTheRecordedHandOntoTheCube) {
   const Scene scene = load_scene("tofu_cube_touch", Preset::standard);
-  ASSERT_TRUE(scene.trajectory);
-  EXPECT_FALSE(load_scene("tofu_cube", Preset::standard).trajectory);
-  const Workspace workspace(scene.workspace);
-  const auto device = open_replay(*scene.trajectory, scene.replay, 1e-3);
+  ASSERT_TRUE(scene.motions[0].trajectory);
+  EXPECT_FALSE(load_scene("tofu_cube", Preset::standard).motions[0].trajectory);
+  const Workspace workspace(scene.motions[0].workspace);
+  const auto device = open_replay(*scene.motions[0].trajectory, scene.motions[0].replay, 1e-3);
   const auto read_lowest = [&] {
     DeviceSample sample;
     EXPECT_EQ(device->read(sample), ReadStatus::ok);
     const Pose pose = workspace.to_scene(sample.pose);
     EXPECT_NEAR(std::abs(pose.orientation.w()), 1, 1e-12) << "the stick lies level, fore and aft";
     double lowest = pose.position.y();
-    for (const Vec3& v : scene.def.tools[0].shape.vertices) lowest = std::min(lowest, pose.position.y() + v.y());
+    for (const Vec3& v : scene.def.tools[0].shape->surface().vertices)
+      lowest = std::min(lowest, pose.position.y() + v.y());
     return lowest;
   };
   EXPECT_GT(read_lowest(), scene.top);

@@ -85,9 +85,9 @@ TEST(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.def.walls[0].plane.offset, -0.1);
   EXPECT_EQ(scene.def.walls[0].friction.static_coefficient, 0.4);
   EXPECT_EQ(scene.def.tools[0].friction.dynamic_coefficient, 0.4);
-  EXPECT_EQ(scene.start.position, Vec3(0.002, 0.016 + 0.001 + 0.002, -0.003));
-  EXPECT_EQ(scene.press.speed, 0.002);
-  EXPECT_EQ(scene.press.depth, 0.01);
+  EXPECT_EQ(scene.motions[0].start.position, Vec3(0.002, 0.016 + 0.001 + 0.002, -0.003));
+  EXPECT_EQ(scene.motions[0].press.speed, 0.002);
+  EXPECT_EQ(scene.motions[0].press.depth, 0.01);
 }
 
 TEST(SceneFile, OfTheManualLoads) {
@@ -103,7 +103,7 @@ TEST(SceneFile, FindsATrajectoryBesideIt) {
   scene["motion"] = json::parse(R"({"replay": {"file": "own.ctraj", "workspace": {"position": [0, 0.02, 0]}}})");
   write_text(folder.file("scene.json"), scene.dump());
   write_text(folder.file("own.ctraj"), "# crumble-traj 1\nt,px,py,pz\n0,0,0,0\n1,0,-0.01,0\n# end rows=2\n");
-  EXPECT_EQ(load_scene(folder.file("scene.json").string(), Preset::standard).trajectory->rows.size(), 2u);
+  EXPECT_EQ(load_scene(folder.file("scene.json").string(), Preset::standard).motions[0].trajectory->rows.size(), 2u);
 }
 
 TEST(SceneFile, RefusesUnknownKeys) {
@@ -133,11 +133,11 @@ TEST(SceneFile, RefusesMissingKeys) {
       {"/body/box", nullptr, Code::format, {"body.paper is missing", "box, sphere and cylinder"}},
       {"/body/spacing", nullptr, Code::format, {"body.spacing is missing"}},
       {"/tool", nullptr, Code::format, {"tool is missing"}},
-      {"/tool/bar", nullptr, Code::format, {"tool.round_stick is missing", "bar"}},
+      {"/tool/bar", nullptr, Code::format, {"tool.round_stick is missing", "bar, blade"}},
       {"/tool/friction/static", nullptr, Code::format, {"tool.friction.static is missing"}},
       {"/walls/0/offset", nullptr, Code::format, {"walls[0].offset is missing"}},
       {"/motion", nullptr, Code::format, {"motion is missing"}},
-      {"/motion/press", nullptr, Code::format, {"motion.press is missing", "replay"}},
+      {"/motion/press", nullptr, Code::format, {"motion.press is missing", "replay and path"}},
       {"/motion/press/depth", nullptr, Code::format, {"motion.press.depth is missing"}},
   }};
   for (const Mistake& mistake : mistakes) expect_refused(mistake, kGood);

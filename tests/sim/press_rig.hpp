@@ -21,7 +21,7 @@ struct PressRig {
     return scene;
   }
   Pose pose_at(std::uint64_t step) const {
-    Pose pose = scene.start;
+    Pose pose = scene.motions[0].start;
     pose.position.y() -= speed * static_cast<double>(step) * scene.def.step.tau;
     return pose;
   }

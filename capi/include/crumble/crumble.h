@@ -82,7 +82,7 @@ enum {
   CRUMBLE_E_MESH = -15, /* an index out of range, a flat or inverted element, ... */
   CRUMBLE_E_MESH_OPEN = -16,
   CRUMBLE_E_MESH_ORIENTATION = -17,
-  CRUMBLE_E_MESH_NONCONVEX = -18,
+  CRUMBLE_E_MESH_NONCONVEX = -18, /* given by no function any more: meshes need not be convex */
   CRUMBLE_E_DUPLICATE_NODE = -19,
   CRUMBLE_E_ISOLATED_NODE = -20,
   CRUMBLE_E_DT_TOO_LARGE = -21, /* time step */
@@ -248,6 +248,16 @@ enum {
   CRUMBLE_PRECISION_FLOAT32 = 1 /* faster; arrays are float64 all the same */
 };
 
+enum {
+  CRUMBLE_CUT_TEST_WITH_FORCES = 0, /* where the next forces are worked out: costs nothing */
+  CRUMBLE_CUT_TEST_AFTER_MOVE = 1   /* on the new positions, as in the paper: another pass over the springs */
+};
+
+enum {
+  CRUMBLE_DRAG_FRAGMENT = 0, /* the rigid motion of a node's fragment: loose pieces fall and tumble */
+  CRUMBLE_DRAG_ROOM = 1      /* the room: the paper's way */
+};
+
 /* Runs task(data, i) for every i from 0 to count - 1, in any order and on any threads, and returns when all are done.
  * What the caller wrote before, the tasks see; what they wrote, the caller sees. `context` is the host's own. */
 typedef void (*crumble_parallel_for)(void *context, uint32_t count, void (*task)(void *data, uint32_t index),
@@ -277,17 +287,48 @@ typedef struct crumble_sim_def {
   const char *kernel; /* of crumble_kernel_name; copied; NULL (default): $CRUMBLE_KERNEL, else the fastest */
   crumble_parallel_for host_threads; /* the host's threads share a step instead of `threads` of ours; default NULL */
   void *host_context;                /* given to host_threads */
+  /* These do change what comes out. */
+  uint32_t cut_test;           /* CRUMBLE_CUT_TEST_: where springs are found too long; default with forces */
+  uint32_t drag_frame;         /* CRUMBLE_DRAG_: what the drag of Eq (1) brakes against; default the fragment */
+  uint32_t surface_samples;    /* 1 (default): thin tools meet the surface between nodes too; 0: nodes alone */
+  uint32_t ball_contact;       /* 1 (default): fragments and the lips of cracks touch each other */
+  double ball_static_friction; /* between fragments, as for tools; default 0.5 */
+  double ball_dynamic_friction; /* default 0.5 */
+  double spring_damping;        /* of a damper along each spring, N s/m; >= 0; default 0 */
 } crumble_sim_def;
 
-enum { CRUMBLE_TOOL_STICK = 0, CRUMBLE_TOOL_BAR = 1, CRUMBLE_TOOL_MESH = 2 };
+/* Where a tool is. This struct never changes its size. */
+typedef struct crumble_pose {
+  double position[3];    /* of the tool's origin, m */
+  double orientation[4]; /* unit quaternion w, x, y, z; made unit again if its length is within 0.001 of 1 */
+} crumble_pose;
 
-/* What a hand moves: a convex body in a frame of its own, which the pose puts into the scene. */
+/* Writes a point of a convex set that lies farthest along `direction`, a unit vector, both in the tool's frame, m. It
+ * is called while the tool is added and in steps, also by several threads at once; it gives the same point for the same
+ * direction, does not block and calls nothing of this API. `context` is the host's own. */
+typedef void (*crumble_support_function)(void *context, const double direction[3], double point[3]);
+
+enum {
+  CRUMBLE_TOOL_STICK = 0,
+  CRUMBLE_TOOL_BAR = 1,  /* a plate is a flat bar */
+  CRUMBLE_TOOL_MESH = 2, /* any closed surface, convex or not, in one part or several */
+  CRUMBLE_TOOL_BALL = 3,
+  CRUMBLE_TOOL_CAPSULE = 4,
+  CRUMBLE_TOOL_CONE = 5,
+  CRUMBLE_TOOL_BLADE = 6,  /* a knife with its edge looking down (-Y) */
+  CRUMBLE_TOOL_SUPPORT = 7 /* a convex set known by its support function; a recording of it cannot be loaded */
+};
+
+/* What a hand moves: a solid in a frame of its own, which offset and pose put into the scene. */
 typedef struct crumble_tool_def {
   uint32_t struct_size;
   uint32_t shape;            /* CRUMBLE_TOOL_; default: the paper's round stick of 8 mm diameter and 5 cm length */
-  double radius;             /* stick: prism on a regular polygon in a circle of this radius, axis +Z, m; 0.004 */
-  double length;             /* stick, m; default 0.05 */
-  double size[3];            /* bar: edge lengths about the origin, m; default 0.006, 0.006, 0.05 */
+  double radius;             /* stick: prism on a regular polygon in a circle of this radius, axis +Z, m; 0.004.
+                                Ball, capsule (of the cylinder and its round ends), cone (of its flat end at +Z) */
+  double length;             /* stick; capsule: its cylinder, without the ends, along Z; cone: from the point at -Z to
+                                the flat end, m; default 0.05 */
+  double size[3];            /* bar: edge lengths about the origin, m; default 0.006, 0.006, 0.05.
+                                Blade: thickness, height and length, about the origin */
   uint32_t sides;            /* stick: 3 to 4096; default 16; one looks down (-Y) when even */
   uint32_t vertex_count;     /* mesh: rows of `vertices` */
   uint32_t triangle_count;   /* mesh: rows of `triangles` */
@@ -296,6 +337,14 @@ typedef struct crumble_tool_def {
   double dynamic_friction;   /* ... and 1.5 */
   const double *vertices;    /* mesh: (vertex_count, 3), m; copied */
   const uint32_t *triangles; /* mesh: (triangle_count, 3) vertices, closed, counter-clockwise from outside; copied */
+  crumble_pose offset;       /* from the tool's frame to that of the hand, whose pose moves it; default: none */
+  double bevel;              /* blade: height, from the edge up, over which it grows to its full thickness, m; up to
+                                size[1]; 0 (default): all of it, a wedge */
+  uint32_t auto_orient;      /* mesh: 1 turns one that faces inward as a whole inside out; default 0: it is refused */
+  uint32_t reserved_2;       /* keep 0 */
+  crumble_support_function support; /* support */
+  void *support_context;            /* given to `support`; must outlive the simulation */
+  double inside[3];                 /* support: any point well within the set, in the tool's frame, m; default 0 */
 } crumble_tool_def;
 
 /* A half-space that the body stays out of: normal . x >= offset on the body's side. */
@@ -308,12 +357,6 @@ typedef struct crumble_wall_def {
   double dynamic_friction; /* default 0 */
 } crumble_wall_def;
 
-/* Where a tool is. This struct never changes its size. */
-typedef struct crumble_pose {
-  double position[3];    /* of the tool's origin, m */
-  double orientation[4]; /* unit quaternion w, x, y, z; made unit again if its length is within 0.001 of 1 */
-} crumble_pose;
-
 /* What the body does to a tool, in scene axes. This struct never changes its size. */
 typedef struct crumble_wrench {
   double force[3];  /* N */
@@ -322,7 +365,7 @@ typedef struct crumble_wrench {
 
 /* What a step had to do; the force is valid all the same. */
 enum {
-  CRUMBLE_STEP_TOOL_JUMPED = 1,       /* a tool moved farther than a step can follow */
+  CRUMBLE_STEP_TOOL_JUMPED = 1,       /* a tool or attachment moved farther than a step can follow */
   CRUMBLE_STEP_CONTACT_SUSPENDED = 2, /* a tool that jumped, or began inside the body, has not been outside since */
   CRUMBLE_STEP_GUARDED = 4            /* CRUMBLE_POLICY_GUARD raised the drag of some nodes */
 };
@@ -350,7 +393,7 @@ typedef struct crumble_counters {
   uint64_t bad_poses;       /* steps refused with CRUMBLE_E_BAD_POSE */
   uint64_t dropped_events;  /* of steps with more than 65536 events */
   uint64_t asleep;          /* fragments, now */
-  uint64_t woken;           /* fragments, by tools */
+  uint64_t woken;           /* fragments, by tools and by fragments that hit them */
   uint64_t removed;         /* fragments */
   uint64_t removed_nodes;
 } crumble_counters;
@@ -366,6 +409,7 @@ typedef struct crumble_profile {
   double cut_springs;
   double sum_reaction;
   double finish_step;
+  double touch_fragments; /* between project_contacts and solve_network */
 } crumble_profile;
 
 /* How the body was laid out for the solver. Springs that repeat along the rows of a crystal stand in segments, the
@@ -380,6 +424,56 @@ typedef struct crumble_sim_info {
   uint32_t partitions; /* pieces that threads can share: so many work at once, at most */
   uint32_t sorted;     /* 1: the solver numbers the nodes its own way, since their order was not a good one */
 } crumble_sim_info;
+
+/* How a node is held. */
+enum {
+  CRUMBLE_HELD_FRESH = 0,    /* came to lie in a tool at the end of the step: no force yet */
+  CRUMBLE_HELD_STICKING = 1, /* goes where its holder goes */
+  CRUMBLE_HELD_SLIDING = 2,  /* along the holder's surface, under dynamic friction */
+  CRUMBLE_HELD_ATTACHED = 4  /* by an attachment: for good */
+};
+
+/* One node that is held, as the last step left it. This struct never changes its size. */
+typedef struct crumble_contact {
+  uint32_t node;
+  uint32_t holder;    /* index of the tool; behind the tools, of the attachment; CRUMBLE_NONE: a wall */
+  uint32_t state;     /* CRUMBLE_HELD_ */
+  uint32_t reserved;  /* 0 */
+  double point[3];    /* where it was held, m */
+  double normal[3];   /* unit, from the holder into the body */
+  double reaction[3]; /* force that the holder puts on the node, N; a tool feels the opposite */
+} crumble_contact;
+
+/* One contact of a local model; crumble_local_model_evaluate reads it. This struct never changes its size. */
+typedef struct crumble_local_contact {
+  double arm[3];       /* from the tool's origin to the node, m */
+  double normal[3];    /* unit, from the tool into the body */
+  double force[3];     /* of springs and outer forces on the node, N */
+  double inner[3];     /* of springs to nodes of the same tool, N: turns with the tool */
+  double stiffness[9]; /* - d force / d node, rows of 3, N/m */
+  double grip;         /* the tangential force may be so many times the normal one */
+} crumble_local_contact;
+
+#define CRUMBLE_LOCAL_CONTACTS 96
+
+/* What the body does to a tool near where it is, for a loop that runs faster than the steps: no pointers, so it may be
+ * copied and handed to another thread. This struct never changes its size. */
+typedef struct crumble_local_model {
+  crumble_pose at;        /* where the tool is */
+  crumble_wrench wrench;  /* there; what the next step gives if the tool stays */
+  double jacobian[36];    /* d(force, torque) / d(translation, rotation vector), rows of 6; symmetric, never positive */
+  double stiffness[9];    /* - d force / d translation, rows of 3, N/m: what a servo loop has to damp */
+  double radius;          /* wrench + jacobian x motion holds while no contact moves farther than this, m; <= 0.0005 */
+  double held_drag;       /* of the nodes that the tool holds, N s/m; in no force */
+  uint32_t fracture;      /* 1: the last step cut springs, so a fall of the force is real */
+  uint32_t contact_count; /* nodes that the tool holds and that press on it */
+  uint32_t listed;        /* of these in `contacts`; the others are in `rest` */
+  uint32_t reserved;      /* 0 */
+  crumble_wrench rest;    /* of attached nodes, and of contacts beyond the list ... */
+  double rest_jacobian[36]; /* ... by this ... */
+  double rest_normal[3];  /* ... and lets go as a whole when it would pull along this; 0, 0, 0: never */
+  crumble_local_contact contacts[CRUMBLE_LOCAL_CONTACTS];
+} crumble_local_model;
 
 /* What a host may make of a fragment. */
 enum {
@@ -422,10 +516,18 @@ CRUMBLE_API crumble_result crumble_sim_get_def(crumble_sim sim, crumble_sim_def 
 CRUMBLE_API crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def *def);
 /* Tools count from 0 in the order they are added; `index` receives the number and may be NULL. The first pose of the
  * first step places a tool.
- * CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE, _UNINITIALIZED, _VERSION, _NULL (arrays of a mesh); for a mesh also _MESH
- * (fewer than 4 triangles, index, position not finite, triangle without area; the text names the first bad one),
- * _MESH_OPEN, _MESH_ORIENTATION, _MESH_NONCONVEX, _TOO_LARGE. [one] */
+ * CRUMBLE_E_INVALID_VALUE (also of a support function whose points no convex set has), _OUT_OF_RANGE, _UNINITIALIZED,
+ * _VERSION, _NULL (arrays of a mesh, a support function), _BAD_POSE (offset); for a mesh also _MESH (fewer than 4
+ * triangles, index, position not finite, surfaces that cross; the text names the first bad one), _MESH_OPEN,
+ * _MESH_ORIENTATION, _TOO_LARGE. [one] */
 CRUMBLE_API crumble_result crumble_sim_add_tool(crumble_sim sim, const crumble_tool_def *def, uint32_t *index);
+/* Nodes that go where a frame goes: a clamp, a hand that never lets go. Like a tool it is moved by a pose in each step,
+ * which stands behind those of the tools and of the attachments before it; `index` receives its number among the
+ * attachments, from 0, and may be NULL. The nodes keep the places in the frame that they have at its first pose.
+ * `nodes` (count) are copied. CRUMBLE_E_NULL, _EMPTY (count 0), _OUT_OF_RANGE (no such node), _STATE (a node that is
+ * fixed or attached already). [one] */
+CRUMBLE_API crumble_result crumble_sim_add_attachment(crumble_sim sim, const uint32_t *nodes, uint32_t count,
+                                                      uint32_t *index);
 /* CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (not a unit normal; friction), _UNINITIALIZED, _VERSION. [one] */
 CRUMBLE_API crumble_result crumble_sim_add_wall(crumble_sim sim, const crumble_wall_def *def);
 /* The nodes that never move: `nodes` (count) replaces those named before. `nodes` may be NULL with count 0.
@@ -434,22 +536,30 @@ CRUMBLE_API crumble_result crumble_sim_fix_nodes(crumble_sim sim, const uint32_t
 /* The same with all nodes whose rest position has y <= height (m): what stands on the table.
  * CRUMBLE_E_INVALID_VALUE. [one] */
 CRUMBLE_API crumble_result crumble_sim_fix_below(crumble_sim sim, double height);
-/* The choices of the paper where it makes one: along-motion contact, equal masses, tau = 2.9 ms unchecked, one
- * iteration, no fading of cuts, the mean force of Eq (7), friction 3.0 / 1.5 on every tool and wall there is, no
- * gravity. Material and fixed nodes stay. [one] */
+/* Fixes more nodes: those that lie at rest in the box from corner `low` to corner `high`, (3) each, m, its faces
+ * included. CRUMBLE_E_NULL, _INVALID_VALUE, _OUT_OF_RANGE (low above high). [one] */
+CRUMBLE_API crumble_result crumble_sim_fix_box(crumble_sim sim, const double *low, const double *high);
+/* Fixes more nodes: those at rest with normal . x <= offset. `normal`: (3), unit.
+ * CRUMBLE_E_NULL, _INVALID_VALUE, _OUT_OF_RANGE (not a unit normal). [one] */
+CRUMBLE_API crumble_result crumble_sim_fix_plane(crumble_sim sim, const double *normal, double offset);
+/* The choices of the paper where it makes one: along-motion contact by nodes alone, fragments that do not touch, drag
+ * against the room, equal masses, tau = 2.9 ms unchecked, one iteration, cuts after the move and without fading, the
+ * mean force of Eq (7), friction 3.0 / 1.5 on every tool and wall there is, no gravity. Material and fixed nodes stay.
+ * [one] */
 CRUMBLE_API crumble_result crumble_sim_apply_paper_preset(crumble_sim sim);
 
-/* One tick of the servo loop for a simulation with exactly one tool: the tool goes to `pose`, the body answers, time
- * advances by tau, `wrench` receives what the body does to the tool. Never allocates (except while recording), locks,
- * waits or calls the system; but with `threads` above 1 it wakes sleeping threads and waits for those at work, and it
- * calls host_threads, which must not throw and must not call into the same simulation (CRUMBLE_E_BUSY).
+/* One tick of the servo loop for a simulation with exactly one tool and no attachment: the tool goes to `pose`, the
+ * body answers, time advances by tau, `wrench` receives what the body does to the tool. Never allocates (except while
+ * recording), locks, waits or calls the system; but with `threads` above 1 it wakes sleeping threads and waits for
+ * those at work, and it calls host_threads, which must not throw and must not call into the same simulation
+ * (CRUMBLE_E_BUSY).
  * On every error *wrench is zero, so that a loop that ignores results pushes nobody. CRUMBLE_E_BAD_POSE (the body and
  * its time stand still in this call; counted in crumble_counters), _DIVERGED (the body left the world: it is frozen at
- * its last good state, and every further step says so until crumble_sim_reset), _OUT_OF_RANGE (another number of
- * tools), _NO_MEMORY (while recording: the step is done, the recording is dropped). [one] */
+ * its last good state, and every further step says so until crumble_sim_reset), _OUT_OF_RANGE (another number of tools
+ * and attachments), _NO_MEMORY (while recording: the step is done, the recording is dropped). [one] */
 CRUMBLE_API crumble_result crumble_sim_step(crumble_sim sim, const crumble_pose *pose, crumble_wrench *wrench);
-/* The same with `tool_count` poses and wrenches, one of each per tool. Without tools both may be NULL with count 0.
- * [one] */
+/* The same with `tool_count` poses and wrenches, one of each per tool and then one of each per attachment. Without any
+ * both may be NULL with count 0. [one] */
 CRUMBLE_API crumble_result crumble_sim_step_tools(crumble_sim sim, const crumble_pose *poses, crumble_wrench *wrenches,
                                                   uint32_t tool_count);
 /* About the last step. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
@@ -458,6 +568,33 @@ CRUMBLE_API crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_cou
 CRUMBLE_API crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile *profile);
 /* How steps are computed. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
 CRUMBLE_API crumble_result crumble_sim_get_info(crumble_sim sim, crumble_sim_info *info);
+
+/* The nodes that tools, attachments and walls hold, in the order of holders, walls last. `count` receives how many there
+ * are; `contacts` has room for `capacity` of them and may be NULL to ask for the count only.
+ * CRUMBLE_E_BUFFER_TOO_SMALL (`count` is written, `contacts` is not). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_contacts(crumble_sim sim, crumble_contact *contacts, uint32_t capacity,
+                                                    uint32_t *count);
+/* The model of tool `tool`, or of attachment `tool` - number of tools, after a step. Takes some microseconds, no memory.
+ * Without force after a step that failed. CRUMBLE_E_OUT_OF_RANGE (no such tool). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_local_model(crumble_sim sim, uint32_t tool, crumble_local_model *model);
+/* What the body does to the tool at `pose`: contacts are followed one by one, each holds no more than its friction and
+ * lets go when it would pull. Continuous in `pose`. No memory. On every error *wrench is zero.
+ * CRUMBLE_E_BAD_POSE, _OUT_OF_RANGE (`listed`). [any] */
+CRUMBLE_API crumble_result crumble_local_model_evaluate(const crumble_local_model *model, const crumble_pose *pose,
+                                                        crumble_wrench *wrench);
+/* Drag of the nodes that a tool or attachment holds, N s/m: what moving them through the room would take on top of the
+ * force; never part of it. CRUMBLE_E_OUT_OF_RANGE (no such tool). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_held_drag(crumble_sim sim, uint32_t tool, double *drag);
+
+/* Forces on nodes beside their weight, `forces`: (count, 3), N, of all nodes; or NULL with count 0: none any more. Kept
+ * until changed or reset; part of the state; goes into a running recording. Between steps; takes time in proportion to
+ * the body. CRUMBLE_E_INVALID_VALUE (the text names the node), _OUT_OF_RANGE (count; above 1e12 N along an axis),
+ * _NO_MEMORY (nothing is changed; while recording it may be that all is done and the recording is dropped, as the text
+ * says). [one] */
+CRUMBLE_API crumble_result crumble_sim_set_node_forces(crumble_sim sim, const double *forces, uint32_t count);
+/* The same for one node, `force`: 3 numbers. No memory except while recording. CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE
+ * (no such node; the force), _NO_MEMORY (while recording: it is done, the recording is dropped). [one] */
+CRUMBLE_API crumble_result crumble_sim_set_node_force(crumble_sim sim, uint32_t node, const double *force);
 
 /* Back to rest, unbroken, at time 0, with tools unplaced and counters at 0; also after CRUMBLE_E_DIVERGED.
  * CRUMBLE_E_STATE (recording). [one] */

@@ -1,8 +1,11 @@
 // What touches the body: tools that a hand or a script moves, and walls that stand still.
 #pragma once
 
-#include "crumble/geometry/convex.hpp"
+#include <cstdint>
+#include <vector>
+
 #include "crumble/geometry/pose.hpp"
+#include "crumble/geometry/solid.hpp"
 
 namespace crumble {
 
@@ -12,10 +15,17 @@ struct Friction {
   double dynamic_coefficient = 0;  // >= 0
 };
 
-/// The paper's manipulator: a convex polyhedron in its own frame.
+/// The paper's manipulator: a solid in a frame of its own.
 struct Tool {
-  ConvexPolyhedron shape;
-  Friction friction;
+  Solid shape;
+  Friction friction = {};
+  Pose offset = {};  // from the tool's frame to that of the hand that holds it, whose pose moves the tool
+};
+
+/// Nodes that go where a frame goes, from first to last: a clamp, a hand that never lets go. It is moved like a tool.
+/// Nodes keep the places in it that they have when it is first placed.
+struct Attachment {
+  std::vector<std::uint32_t> nodes;
 };
 
 /// A half-space that the body stays out of: n . x >= offset on the body's side. A floor is {(0, 1, 0), 0}.
@@ -32,6 +42,7 @@ enum class ContactRule : std::uint8_t {
 
 /// Throws Error naming the field.
 void check(const Friction& friction);
+void check(const Tool& tool);
 void check(const Wall& wall);
 
 }  // namespace crumble

@@ -21,6 +21,12 @@ enum class CutTest : std::uint8_t {
       1,  // on the new positions, as in the paper: costs another pass over the springs, without SIMD or threads
 };
 
+/// What the drag of Eq (1) brakes a node against.
+enum class DragFrame : std::uint8_t {
+  fragment = 0,  // the rigid motion of its fragment, so that loose pieces fall and tumble; the room where it is fixed
+  room = 1,      // the room: the paper's way
+};
+
 /// How one step is done.
 struct StepSettings {
   double tau = 1e-3;  // seconds that a step (paper: an iteration) advances; (0, 0.01]
@@ -28,8 +34,11 @@ struct StepSettings {
   std::uint32_t iterations = 1;  // of Eqs (3) and (4) per step, each advancing tau; above 1 only unchecked
   ContactRule contact_rule = ContactRule::nearest_surface;
   CutTest cut_test = CutTest::with_forces;
-  double cut_fade = 4e-3;   // seconds in which a cut spring's force goes to 0, in equal steps; [0, 1]
-  bool mean_force = false;  // Eq (7): report the mean of the last five forces
+  double cut_fade = 4e-3;  // seconds in which a cut spring's force goes to 0, in equal steps; [0, 1]
+  DragFrame drag_frame = DragFrame::fragment;
+  bool surface_samples = true;  // thin tools meet the surface between nodes too
+  bool ball_contact = true;     // fragments and the lips of cracks touch each other
+  bool mean_force = false;      // Eq (7): report the mean of the last five forces
   Precision precision = Precision::float64;
   // These change no bit of the result:
   bool energy_audit = false;  // keep the ledger; costs four passes over the springs
@@ -47,16 +56,22 @@ struct SimulationDef {
   Vec3 gravity{0, -9.81, 0};                          // m/s^2
   std::vector<Wall> walls{{{Vec3::UnitY(), 0}, {}}};  // a smooth floor at y = 0
   std::vector<Tool> tools;
+  std::vector<Attachment> attachments;  // moved like tools: their poses stand behind those of the tools
+  Friction ball_friction{0.5, 0.5};     // between fragments
   StepSettings step;
 };
 
-/// The paper's choices where it makes one: along-motion contact, equal masses, tau = 2.9 ms unchecked, one iteration,
-/// cuts after the move and without fading, Eq (7)'s mean, friction 3.0 / 1.5 on every tool and wall, no gravity. Body,
-/// fixed nodes and material stay.
+/// The paper's choices where it makes one: along-motion contact by nodes alone, drag against the room, equal masses,
+/// tau = 2.9 ms unchecked, one iteration, cuts after the move and without fading, Eq (7)'s mean, friction 3.0 / 1.5 on
+/// every tool and wall, no gravity. Body, fixed nodes and material stay.
 void apply_paper_preset(SimulationDef& def);
 
 /// Nodes whose rest position has y <= height, metres: what stands on the table.
 std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height);
+/// Nodes whose rest position lies in the box, its faces included; corners in metres.
+std::vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high);
+/// Nodes whose rest position has n . x <= offset.
+std::vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane);
 
 /// The definition as bytes and back (recordings). Reading throws Error(corrupt) and whatever its parts refuse.
 void write_definition(const SimulationDef& def, ByteWriter& out);

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "crumble/base/cloned.hpp"
 #include "crumble/base/error.hpp"
 #include "crumble/base/reserved_vector.hpp"
+#include "crumble/contact/ball_contacts.hpp"
 #include "crumble/contact/contacts.hpp"
 #include "crumble/fracture/fragment_tracker.hpp"
 #include "crumble/network/energy.hpp"
@@ -16,6 +18,7 @@
 #include "crumble/sim/debris.hpp"
 #include "crumble/sim/definition.hpp"
 #include "crumble/sim/event_log.hpp"
+#include "crumble/sim/local_model.hpp"
 #include "crumble/sim/step_info.hpp"
 
 namespace crumble {
@@ -26,7 +29,8 @@ class Simulation {
  public:
   explicit Simulation(SimulationDef def);
 
-  /// One servo tick (paper, section 2.6): the tools go to `poses` (one per tool) and the body answers. A bad pose
+  /// One servo tick (paper, section 2.6): the tools go to `poses` (one for each tool, then one for
+  /// each attachment) and the body answers. A bad pose
   /// leaves body and time as they are and makes all wrenches zero.
   const StepInfo& step(std::span<const Pose> poses) noexcept;
 
@@ -36,9 +40,25 @@ class Simulation {
   const EnergyLedger& ledger() const noexcept { return ledger_; }
 
   /// What the body does to a tool (Eq 6; Eq 7's mean when asked for).
-  const Wrench& wrench(std::size_t tool) const noexcept { return wrenches_[tool]; }
+  const Wrench& wrench(std::size_t holder) const noexcept { return wrenches_[holder]; }
+  /// Where fragments and the lips of cracks touch: as many as there are, by index.
+  std::size_t ball_contact_count() const noexcept { return balls_ ? balls_->contact_count() : 0; }
+  BallContact ball_contact(std::size_t index) const noexcept { return balls_->contact(index); }
   /// Nodes held now: place, normal, state and the force on each.
   std::span<const NodeConstraint> contacts() const noexcept { return contacts_.constraints(); }
+
+  /// What the body does to a tool or attachment near where it is now; works it out, some microseconds. No allocation.
+  LocalModel local_model(std::size_t tool) const noexcept;
+  /// Drag of the nodes that a tool or attachment holds, sum of c_i, N s/m. It is in no force that a hand gets.
+  double held_drag(std::size_t tool) const noexcept;
+
+  /// Forces on the nodes from the host, N, beside their weight: kept until changed, 0 after reset(). Part of the state,
+  /// so a recording has to know of them. Both take time in proportion to the body; no allocation unless they throw.
+  /// Throws Error and changes nothing: out_of_range (count, node, 1e12 N along an axis), invalid_value (not finite); of
+  /// the first such node.
+  void set_node_forces(VecView forces);
+  void set_node_force(std::uint32_t node, const Vec3& force);
+  VecView node_forces() const noexcept { return node_forces_; }
 
   const SimulationDef& definition() const noexcept { return def_; }
   /// May be borrowed, by other threads too: nothing touches it until the simulation is moved, assigned to or destroyed.
@@ -55,7 +75,7 @@ class Simulation {
   void read_positions(std::uint32_t first, VecSpan positions) const noexcept {
     solver_->read_positions(first, positions);
   }
-  /// Springs + gravity at the present positions, N. Works them out: not for the servo loop; allocates.
+  /// Springs, gravity and node forces at the present positions, N. Works them out: not for the servo loop; allocates.
   VecArray forces() const;
   std::span<const std::uint8_t> intact() const noexcept { return intact_; }
   /// Springs cut by the last step, ascending.
@@ -116,6 +136,14 @@ class Simulation {
   void load_fading(ByteReader& in);
   bool find_divergence() noexcept;
   void track_fragments() noexcept;
+  std::optional<BallContacts> make_balls() const;
+  std::span<const BallFragment> ball_fragments() const noexcept;
+  void regroup(std::uint64_t now, std::span<const std::uint32_t> cuts) noexcept;
+  void find_loose_fragments(std::uint64_t now) noexcept;
+  void find_leaders(std::uint64_t now) noexcept;
+  std::uint64_t last_step() const noexcept { return info_.step > 0 ? info_.step - 1 : 0; }
+  void touch_fragments() noexcept;
+  std::size_t holder_count() const noexcept { return def_.tools.size() + def_.attachments.size(); }
   void wake_roused() noexcept;
   void wake(std::uint32_t fragment) noexcept;
   void put_to_sleep(std::uint32_t fragment) noexcept;
@@ -127,6 +155,12 @@ class Simulation {
   void log_cut(std::uint32_t spring) noexcept;
   void log_contacts() noexcept;
   void set_share(std::uint32_t spring, double share) noexcept;
+  void add_to_model(LocalModel& model, const NodeConstraint& contact) const noexcept;
+  LocalContact springs_of_contact(const NodeConstraint& contact) const noexcept;
+  bool has_node_forces() const noexcept;
+  void clear_node_forces() noexcept;
+  void apply_node_forces() noexcept;
+  void load_node_forces(ByteReader& in);
   void forget_copies() noexcept { positions_known_ = velocities_known_ = false; }
 
   SimulationDef def_;
@@ -138,20 +172,27 @@ class Simulation {
   std::uint32_t fade_substeps_;   // in which a cut spring still pulls, after the one that cut it
   Cloned<NetworkSolver> solver_;  // holds the state of nodes and springs
   Contacts contacts_;
-  std::vector<double> stiffnesses_;   // in force now, N/m: fading to 0 once a spring is cut (spring_count)
-  VecArray external_;                 // weight of each node, N
-  std::vector<std::uint8_t> intact_;  // 1 intact, 0 cut (spring_count)
+  std::optional<BallContacts> balls_;
+  VecArray ball_positions_, ball_velocities_;  // of balls_->nodes()
+  std::vector<BallFragment> ball_fragments_;   // by id
+  std::vector<double> stiffnesses_;            // in force now, N/m: fading to 0 once a spring is cut (spring_count)
+  VecArray node_forces_;                       // from the host, N
+  VecArray external_;                          // weight + node force of each node, N
+  std::vector<std::uint8_t> intact_;           // 1 intact, 0 cut (spring_count)
   std::vector<std::uint32_t> new_cuts_;
   ReservedVector<Fading> fading_;            // cut springs that still pull, oldest first
   std::vector<Pose> start_poses_;            // of the tools, at the start of the step
   mutable VecArray positions_, velocities_;  // copies by node
   mutable bool positions_known_ = false, velocities_known_ = false;
-  VecArray before_solve_;  // positions, for the audit
+  mutable std::vector<std::uint32_t> marks_;  // room to work (node_count), 0
+  VecArray before_solve_;                     // positions, for the audit
   double kinetic_before_solve_ = 0;
 
   FragmentTracker fragments_;
   std::vector<FragmentState> fragment_states_;  // by id (node_count: there are never more)
-  std::vector<std::uint8_t> is_debris_;         // by id, of find_debris
+  std::uint64_t regroup_at_ = 0;                // step in which a fragment stops following its parent
+  std::vector<std::uint32_t> loose_first_, loose_nodes_, loose_group_of_;  // of find_loose_fragments
+  std::vector<std::uint8_t> is_debris_;                                    // by id, of find_debris
   ReservedVector<std::uint32_t> debris_;
 
   EventLog event_log_;

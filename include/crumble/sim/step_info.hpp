@@ -16,7 +16,9 @@ struct Wrench {
 
 /// What the last step did. The force is valid whatever the flags say.
 enum StepFlag : std::uint32_t {
-  kToolJumped = 1u << 0,        // a tool moved more than 8 half thicknesses: its contact is suspended
+  // a tool moved more than 8 half thicknesses: its contact is suspended; or an attachment at more than
+  // Contacts::kMaxAttachedSpeed: it has taken hold of its nodes anew
+  kToolJumped = 1u << 0,
   kContactSuspended = 1u << 1,  // a tool that jumped, or began inside the body, has not been outside since
   kGuarded = 1u << 2,           // the guard raised the drag of some nodes (see Counters::guarded_nodes)
 };
@@ -25,7 +27,7 @@ struct StepInfo {
   std::uint32_t flags = 0;     // StepFlag bits
   std::uint64_t step = 0;      // steps done since the start
   double time = 0;             // simulated seconds
-  std::uint32_t contacts = 0;  // nodes that tools hold
+  std::uint32_t contacts = 0;  // nodes that tools and attachments hold
   std::uint32_t new_cuts = 0;  // springs cut in this step
   std::uint32_t bad_node = 0;  // with status diverged: the first node that left the world
 };
@@ -35,6 +37,7 @@ struct StepProfile {
   double move_tool = 0;
   double find_contacts = 0;
   double project_contacts = 0;
+  double touch_fragments = 0;
   double solve_network = 0;
   double cut_springs = 0;
   double sum_reaction = 0;
@@ -50,7 +53,7 @@ struct Counters {
   std::uint64_t bad_poses = 0;        // steps refused for a pose that is not finite or not a rotation
   std::uint64_t dropped_events = 0;   // in steps with more than kMaxEvents of them
   std::uint64_t asleep = 0;           // fragments, now
-  std::uint64_t woken = 0;            // fragments, by tools
+  std::uint64_t woken = 0;            // fragments, by tools and by fragments that hit them
   std::uint64_t removed = 0;          // fragments
   std::uint64_t removed_nodes = 0;
 };
