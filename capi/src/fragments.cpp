@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "defs.hpp"
 #include "objects.hpp"
+#include "record.hpp"
 
 namespace crumble::capi {
 namespace {
@@ -12,17 +13,6 @@ namespace {
 static_assert(std::uint32_t{CRUMBLE_FRAGMENT_ACTIVE} == static_cast<std::uint32_t>(FragmentState::active));
 static_assert(std::uint32_t{CRUMBLE_FRAGMENT_ASLEEP} == static_cast<std::uint32_t>(FragmentState::asleep));
 static_assert(std::uint32_t{CRUMBLE_FRAGMENT_REMOVED} == static_cast<std::uint32_t>(FragmentState::removed));
-
-// What has been done has been done, so only the recording can be given up.
-crumble_result record(Sim& sim, const Call& call, std::uint32_t fragment, FragmentState state) noexcept {
-  try {
-    sim.recording->add_fragment_state(fragment, state);
-    return CRUMBLE_OK;
-  } catch (...) {
-    sim.recording.reset();
-    return call.fail(CRUMBLE_E_NO_MEMORY, {"it is done, but the recording found no memory and was dropped"});
-  }
-}
 
 }  // namespace
 }  // namespace crumble::capi
@@ -34,7 +24,9 @@ crumble_result crumble_sim_set_fragment_state(crumble_sim sim, uint32_t fragment
   return with<Sim>(__func__, sim, [&](Sim& s, const Call& call) -> crumble_result {
     require_at_most("state", state, CRUMBLE_FRAGMENT_REMOVED);
     s.simulation.set_fragment_state(fragment, static_cast<FragmentState>(state));
-    return s.recording ? record(s, call, fragment, static_cast<FragmentState>(state)) : CRUMBLE_OK;
+    return record(s, call, [&](Recording& recording) {
+      recording.add_fragment_state(fragment, static_cast<FragmentState>(state));
+    });
   });
 }
 

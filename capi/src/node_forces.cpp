@@ -1,26 +1,8 @@
 // Forces that the host puts on nodes.
 #include "defs.hpp"
 #include "objects.hpp"
+#include "record.hpp"
 #include "rigid.hpp"
-
-namespace crumble::capi {
-namespace {
-
-// What has been done has been done, so only the recording can be given up.
-template <class Keep>
-crumble_result record(Sim& sim, const Call& call, Keep&& keep) noexcept {
-  if (!sim.recording) return CRUMBLE_OK;
-  try {
-    keep(*sim.recording);
-    return CRUMBLE_OK;
-  } catch (...) {
-    sim.recording.reset();
-    return call.fail(CRUMBLE_E_NO_MEMORY, {"it is done, but the recording found no memory and was dropped"});
-  }
-}
-
-}  // namespace
-}  // namespace crumble::capi
 
 using namespace crumble;
 using namespace crumble::capi;

@@ -1,10 +1,10 @@
 #include "geometry/solid_meshes.hpp"
 
 #include <cmath>
-#include <map>
 
 #include "crumble/base/random.hpp"
 #include "crumble/geometry/convex.hpp"
+#include "geometry/direction_sphere.hpp"
 
 namespace crumble {
 namespace {
@@ -64,32 +64,11 @@ TriangleMesh make_revolved(const std::vector<Point2>& profile, std::uint32_t ste
 }
 
 TriangleMesh make_blob(int levels, double roughness, std::uint64_t seed) {
-  const double g = 0.5 * (1 + std::sqrt(5.0));
-  TriangleMesh mesh;
-  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  for (int level = 0; level < levels; ++level) {
-    std::map<std::array<std::uint32_t, 2>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)}, mesh.vertices.size());
-      if (is_new) mesh.vertices.push_back(0.5 * (mesh.vertices[a].normalized() + mesh.vertices[b].normalized()));
-      return at->second;
-    };
-    std::vector<Triangle> finer;
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-    }
-    mesh.triangles = finer;
-  }
+  TriangleMesh mesh = make_direction_sphere(levels);
   Random random(seed);
   std::array<Vec3, 6> waves;
   for (Vec3& wave : waves) wave = {random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4)};
   for (Vec3& v : mesh.vertices) {
-    v.normalize();
     double noise = 0;
     for (const Vec3& wave : waves) noise += std::sin(wave.dot(v)) / waves.size();
     v *= 1 + roughness * noise;
