@@ -151,6 +151,26 @@ TEST(TwoBodies, OneDroppedOnTheOtherComesToRestOnIt) {
 }
 
 // Each advances tau, and bodies touch in all of them.
+// What a hit wakes is loose again: without a floor it falls like a stone, and not through syrup.
+TEST(TwoBodies, ASleeperThatIsHitFalls) {
+  SimulationDef def = stack(0.02, 0.01);
+  def.walls.clear();
+  Simulation sim(def);
+  const std::size_t all = sim.mesh().node_count(), half = all / 2;
+  sim.set_fragment_state(0, FragmentState::asleep);
+  for (int s = 0; s < 300 && sim.counters().woken == 0; ++s) sim.step({});
+  ASSERT_EQ(sim.counters().woken, 1u);
+  for (int s = 0; s < 20; ++s) sim.step({});
+  const auto speed = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < half; ++i) sum += sim.velocities().y[i];
+    return sum / static_cast<double>(half);
+  };
+  const double before = speed();
+  for (int s = 0; s < 50; ++s) sim.step({});
+  EXPECT_LT(speed() - before, -0.9 * 9.81 * 0.05);
+}
+
 TEST(TwoBodies, TwoIterationsAreTwoStepsWhereNothingElseTouches) {
   SimulationDef def = stack(0.02, 0.008);
   def.walls.clear();
