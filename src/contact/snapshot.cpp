@@ -39,7 +39,7 @@ void Contacts::save(ByteWriter& out) const {
     put(out, m.to.position);
     const Quat& q = m.to.orientation;
     out.put(q.w()), out.put(q.x()), out.put(q.y()), out.put(q.z());
-    out.put(static_cast<std::uint8_t>(m.placed | m.engaged << 1 | m.jumped << 2));
+    out.put(static_cast<std::uint8_t>(m.placed | m.engaged << 1 | m.jumped << 2 | m.suspended << 3));
   }
   for (const Vec3& anchor : anchors_) put(out, anchor);
   surface_.save(out);
@@ -71,7 +71,7 @@ void Contacts::load(ByteReader& in) {
     m.from_frame = m.to_frame = frame_of(holder, m.to);
     const auto flags = in.get<std::uint8_t>();
     require(flags < 8, "tool state");
-    m.placed = flags & 1, m.engaged = flags >> 1 & 1, m.jumped = flags >> 2 & 1;
+    m.placed = flags & 1, m.engaged = flags >> 1 & 1, m.jumped = flags >> 2 & 1, m.suspended = flags >> 3 & 1;
   }
   for (Vec3& anchor : anchors_) anchor = get_vector(in);
   surface_.load(in);

@@ -44,7 +44,20 @@ void Contacts::move_tool(std::size_t tool) noexcept {
   const double places = std::clamp(std::ceil(m.travel / thickness_met(shape)), 1.0, double{kMaxPlaces});
   m.places = m.jumped ? 1 : static_cast<std::uint32_t>(places);
   if (!m.jumped) return;
-  m.from = m.to, m.from_frame = m.to_frame, m.travel = 0, m.engaged = false;
+  m.from = m.to, m.from_frame = m.to_frame, m.travel = 0;
+  let_go(tool);
+}
+
+void Contacts::suspend(std::size_t tool, bool suspended) noexcept {
+  if (tool >= tools_.size() || motions_[tool].suspended == suspended) return;
+  motions_[tool].suspended = suspended;
+  if (!suspended) return;
+  let_go(tool);
+  drop_released();
+}
+
+void Contacts::let_go(std::size_t tool) noexcept {
+  motions_[tool].engaged = false;
   for (NodeConstraint& c : constraints_) {
     if (c.holder == tool) c.state = ContactState::released;
   }
@@ -53,7 +66,7 @@ void Contacts::move_tool(std::size_t tool) noexcept {
 void Contacts::find_of_tool(std::uint32_t t, std::uint32_t place_index, NodeSource& nodes) noexcept {
   const Tool& tool = tools_[t];
   Motion& motion = motions_[t];
-  if (!motion.placed) return;
+  if (!motion.placed || motion.suspended) return;
   const bool last = place_index + 1 == motion.places;
   const double progress = static_cast<double>(place_index + 1) / motion.places;
   const Frame frame = last ? motion.to_frame : frame_of(t, interpolate(motion.from, motion.to, progress));

@@ -9,7 +9,7 @@ namespace crumble {
 namespace {
 
 constexpr std::uint64_t kRecordingMagic = 0x31304345524d5243u;  // "CRMREC01"
-constexpr std::uint32_t kRecordingVersion = 3;                  // 3: node forces
+constexpr std::uint32_t kRecordingVersion = 4;                  // 4: suspensions
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
   Hash hash;
@@ -65,6 +65,10 @@ void Recording::add_node_force(std::uint32_t node, const Vec3& force) {
   force_changes_.push_back({hashes_.size(), node, force});
 }
 
+void Recording::add_suspension(std::uint32_t tool, bool suspended) {
+  suspensions_.push_back({hashes_.size(), tool, suspended});
+}
+
 void Recording::apply_changes(std::size_t step, Simulation& sim) const {
   try {
     for (const FragmentChange& change : before_step(fragment_changes_, step)) {
@@ -79,6 +83,7 @@ void Recording::apply_changes(std::size_t step, Simulation& sim) const {
       }
       sim.set_node_forces(forces);
     }
+    for (const Suspension& s : before_step(suspensions_, step)) sim.suspend_contact(s.tool, s.suspended);
   } catch (const Error& error) {
     throw Error(Code::corrupt, "recording, before step " + std::to_string(step) + ": " + error.what());
   }
@@ -113,6 +118,10 @@ void Recording::save(const std::filesystem::path& path) const {
     out.put(change.step), out.put(change.node);
     for (int axis = 0; axis < 3; ++axis) out.put(change.force[axis]);
   }
+  out.put(static_cast<std::uint64_t>(suspensions_.size()));
+  for (const Suspension& suspension : suspensions_) {
+    out.put(suspension.step), out.put(suspension.tool), out.put(std::uint8_t{suspension.suspended});
+  }
   out.put(checksum(out.bytes()));
   write_bytes(path, out.bytes());
 }
@@ -142,6 +151,7 @@ Recording Recording::load(const std::filesystem::path& path) {
   for (std::uint64_t i = 0; i < steps; ++i) recording.hashes_.push_back(in.get<std::uint64_t>());
   recording.load_fragment_changes(in, name);
   recording.load_force_changes(in, name);
+  recording.load_suspensions(in, name);
   return recording;
 }
 
@@ -168,6 +178,19 @@ void Recording::load_force_changes(ByteReader& in, const std::string& name) {
       throw Error(Code::corrupt, name + " holds an impossible change of a node's force");
     }
     force_changes_.push_back({step, node, {x, y, z}});
+  }
+}
+
+void Recording::load_suspensions(ByteReader& in, const std::string& name) {
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    const auto step = in.get<std::uint64_t>();
+    const auto tool = in.get<std::uint32_t>();
+    const auto suspended = in.get<std::uint8_t>();
+    const std::uint64_t before = suspensions_.empty() ? 0 : suspensions_.back().step;
+    if (step < before || step > hashes_.size() || tool >= tool_count_ || suspended > 1) {
+      throw Error(Code::corrupt, name + " holds an impossible suspension of a tool");
+    }
+    suspensions_.push_back({step, tool, suspended == 1});
   }
 }
 

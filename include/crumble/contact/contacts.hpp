@@ -79,6 +79,10 @@ class Contacts {
   bool engaged(std::size_t holder) const noexcept { return motions_[holder].engaged; }
   bool jumped(std::size_t holder) const noexcept { return motions_[holder].jumped; }
 
+  /// A suspended tool lets go of all that it holds and touches nothing; after it, it is not engaged until it has been
+  /// outside once. Attachments hold on.
+  void suspend(std::size_t tool, bool suspended) noexcept;
+
   /// Back to before the first move, all nodes awake, none excluded, nothing cut.
   void clear() noexcept;
   void save(ByteWriter& out) const;
@@ -100,7 +104,7 @@ class Contacts {
     Mat3 turning = Mat3::Zero();
     double travel = 0, tau = 0;
     std::uint32_t places = 1;
-    bool placed = false, engaged = false, jumped = false;
+    bool placed = false, engaged = false, jumped = false, suspended = false;
   };
   struct Bounds {  // of a tool in its own frame
     Vec3 low, high;
@@ -116,6 +120,7 @@ class Contacts {
 
   Frame frame_of(std::size_t holder, const Pose& hand) const noexcept;
   void move_tool(std::size_t tool) noexcept;
+  void let_go(std::size_t tool) noexcept;
   void find_of_tool(std::uint32_t tool, std::uint32_t place, NodeSource& nodes) noexcept;
   bool is_outside(const Tool& tool, const Frame& frame, std::span<const std::uint32_t> near,
                   const NodeSource& nodes) const noexcept;

@@ -22,12 +22,14 @@ class Recording {
   void add_fragment_state(std::uint32_t fragment, FragmentState state);
   /// After each Simulation::set_node_force between steps; after set_node_forces for every node whose force changed.
   void add_node_force(std::uint32_t node, const Vec3& force);
+  /// After each Simulation::suspend_contact between steps.
+  void add_suspension(std::uint32_t tool, bool suspended);
 
   std::size_t step_count() const { return hashes_.size(); }
   std::size_t tool_count() const { return tool_count_; }
   std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
   std::uint64_t state_hash(std::size_t step) const { return hashes_[step]; }
-  /// Does to `sim` what the host did to fragments and node forces before the step. Throws Error(corrupt) when that
+  /// Does to `sim` what the host did to fragments, node forces and tools before the step. Throws Error(corrupt) when that
   /// cannot be done.
   void apply_changes(std::size_t step, Simulation& sim) const;
   /// A simulation at the recording's start. Of `how` only what changes no bit counts: audit, kernel, threads.
@@ -48,15 +50,22 @@ class Recording {
     std::uint32_t node;
     Vec3 force;
   };
+  struct Suspension {
+    std::uint64_t step;  // that came after it
+    std::uint32_t tool;
+    bool suspended;
+  };
   Recording() = default;
   void load_fragment_changes(ByteReader& in, const std::string& name);
   void load_force_changes(ByteReader& in, const std::string& name);
+  void load_suspensions(ByteReader& in, const std::string& name);
   std::vector<std::uint8_t> definition_, snapshot_;
   std::size_t tool_count_ = 0;  // and attachments
   std::vector<Pose> poses_;     // (step_count x tool_count)
   std::vector<std::uint64_t> hashes_;
   std::vector<FragmentChange> fragment_changes_;  // in the order of time
   std::vector<ForceChange> force_changes_;        // in the order of time
+  std::vector<Suspension> suspensions_;           // in the order of time
 };
 
 /// The first step whose state differs from the recorded one; nothing when all agree.

@@ -47,6 +47,14 @@ class Simulation {
   /// Nodes held now: place, normal, state and the force on each.
   std::span<const NodeConstraint> contacts() const noexcept { return contacts_.constraints(); }
 
+  /// A suspended tool lets go of the body and goes through it without touching; afterwards it touches again once it has
+  /// been outside. For a hand that must not feel anything now. Between steps; part of the state, so a recording has to
+  /// know of it. Attachments hold on.
+  void suspend_contact(std::size_t tool, bool suspended) noexcept { contacts_.suspend(tool, suspended); }
+  /// False while suspended, and from then, from a jump or a start inside the body on until the tool has been outside
+  /// once; of an attachment, until it is placed.
+  bool engaged(std::size_t holder) const noexcept { return contacts_.engaged(holder); }
+
   /// What the body does to a tool or attachment near where it is now; works it out, some microseconds. No allocation.
   LocalModel local_model(std::size_t tool) const noexcept;
   /// Drag of the nodes that a tool or attachment holds, sum of c_i, N s/m. It is in no force that a hand gets.
@@ -61,6 +69,8 @@ class Simulation {
   VecView node_forces() const noexcept { return node_forces_; }
 
   const SimulationDef& definition() const noexcept { return def_; }
+  /// Tools and attachments: as many poses as a step takes.
+  std::size_t holder_count() const noexcept { return def_.tools.size() + def_.attachments.size(); }
   /// May be borrowed, by other threads too: nothing touches it until the simulation is moved, assigned to or destroyed.
   const TetMesh& mesh() const noexcept { return def_.mesh; }
   const SpringNetwork& network() const noexcept { return network_; }
@@ -143,7 +153,6 @@ class Simulation {
   void find_leaders(std::uint64_t now) noexcept;
   std::uint64_t last_step() const noexcept { return info_.step > 0 ? info_.step - 1 : 0; }
   void touch_fragments() noexcept;
-  std::size_t holder_count() const noexcept { return def_.tools.size() + def_.attachments.size(); }
   void wake_roused() noexcept;
   void wake(std::uint32_t fragment) noexcept;
   void put_to_sleep(std::uint32_t fragment) noexcept;
