@@ -7,10 +7,11 @@
 namespace crumble {
 namespace {
 
-constexpr std::array kAllKinds = {DeviceKind::null,    DeviceKind::press,  DeviceKind::replay,
-                                  DeviceKind::phantom, DeviceKind::custom, DeviceKind::path};
+constexpr std::array kAllKinds = {DeviceKind::null,   DeviceKind::press, DeviceKind::replay, DeviceKind::phantom,
+                                  DeviceKind::custom, DeviceKind::path,  DeviceKind::hand};
 // A custom device is handed over as an object; there is nothing to open.
-constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::path};
+constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::path,
+                                   DeviceKind::hand};
 
 std::string list(std::span<const DeviceKind> kinds) {
   std::string text;
@@ -38,6 +39,8 @@ const char* to_string(DeviceKind kind) {
       return "custom";
     case DeviceKind::path:
       return "path";
+    case DeviceKind::hand:
+      return "hand";
   }
   return "unknown";
 }
@@ -57,6 +60,8 @@ std::unique_ptr<Device> open_device(const DeviceDef& def) {
       return open_press(def.press, def.tick);
     case DeviceKind::path:
       return open_path(def.path, def.tick);
+    case DeviceKind::hand:
+      return open_hand(def.hand, def.tick);
     case DeviceKind::replay:
       return open_replay(read_trajectory(def.trajectory), def.replay, def.tick);
     case DeviceKind::phantom:

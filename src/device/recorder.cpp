@@ -1,35 +1,14 @@
 #include "crumble/device/recorder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <new>
-#include <utility>
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/device/open.hpp"
+#include "device/info_lines.hpp"
 
 namespace crumble {
-namespace {
-
-std::string measured_text(std::uint32_t measured) {
-  constexpr std::array<std::pair<std::uint32_t, const char*>, 7> kNames = {{
-      {quantity::kPosition, "position"},
-      {quantity::kOrientation, "orientation"},
-      {quantity::kLinearVelocity, "linear velocity"},
-      {quantity::kAngularVelocity, "angular velocity"},
-      {quantity::kButtons, "buttons"},
-      {quantity::kForce, "force"},
-      {quantity::kTorque, "torque"},
-  }};
-  std::string text;
-  for (const auto& [bit, name] : kNames) {
-    if (measured & bit) text += (text.empty() ? "" : ", ") + std::string(name);
-  }
-  return text;
-}
-
-}  // namespace
 
 Recorder::Recorder(std::unique_ptr<Device> device, std::size_t capacity) : device_(std::move(device)) {
   if (!device_) throw Error(Code::null, "recorder: device is null");
@@ -79,8 +58,8 @@ Trajectory Recorder::trajectory() const {
                 "device: " + name,
                 std::string("kind: ") + to_string(info().kind),
                 "nominal_rate_hz: " + to_text(info().rate),
-                "measured: " + measured_text(info().measured),
                 "force: as written to the device"};
+  for (const std::string& line : device::info_lines(info())) out.header.push_back(line);
   if (dropped_ > 0) out.header.push_back("dropped: " + std::to_string(dropped_));
   out.columns = quantity::kAll;
   out.rows.assign(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(size_));

@@ -5,6 +5,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/device/pose_curve.hpp"
+#include "device/info_lines.hpp"
 
 namespace crumble {
 namespace {
@@ -40,7 +41,9 @@ class ReplayDevice final : public Device {
     if (!source.empty()) info_.name += " of " + std::string(source);
     constexpr std::uint32_t kVelocities = quantity::kLinearVelocity | quantity::kAngularVelocity;
     constexpr std::uint32_t kPlayed = quantity::kPosition | quantity::kOrientation | quantity::kButtons | kVelocities;
-    info_.measured = columns_ & (recorded_.empty() ? kPlayed & ~kVelocities : kPlayed);
+    info_.measured = columns_;
+    device::read_info_lines(trajectory, info_);
+    info_.measured &= columns_ & (recorded_.empty() ? kPlayed & ~kVelocities : kPlayed);
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }

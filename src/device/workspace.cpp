@@ -38,4 +38,12 @@ Vec3 Workspace::torque_to_device(const Vec3& torque) const noexcept {
   return force_gain_ * rotate_back(rotation_, torque);
 }
 
+Mat3 Workspace::stiffness_to_device(const Mat3& stiffness) const noexcept {
+  Mat3 out;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.col(axis) = (force_gain_ * scale_ * scale_) * rotate_back(rotation_, rotate(stiffness, rotation_.col(axis)));
+  }
+  return out;
+}
+
 }  // namespace crumble

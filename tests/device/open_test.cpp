@@ -10,6 +10,7 @@ namespace {
 TEST(Open, OpensEveryKindThatItLists) {
   DeviceDef def;
   def.path.points = {{.time = 1}};
+  def.hand.points = {{.time = 1}};
   def.trajectory = std::string(CRUMBLE_SOURCE_DIR) + "/examples/trajectories/press_1mm_s.ctraj";
   for (const DeviceKind kind : available_devices()) {
     def.kind = kind;
@@ -18,6 +19,12 @@ TEST(Open, OpensEveryKindThatItLists) {
     EXPECT_EQ(device->info().rate, 1000);
     DeviceSample sample;
     EXPECT_EQ(device->read(sample), ReadStatus::ok);
+    EXPECT_FALSE(device->info().servo_driven);  // nor can it be started
+    const Error error = error_of([&] { device->start_servo({}); });
+    EXPECT_EQ(error.code(), Code::unsupported) << to_string(kind);
+    EXPECT_TRUE(mentions(error, device->info().name)) << error.what();
+    device->stop_servo();
+    EXPECT_STREQ(device->error_text(), "");
   }
 }
 
@@ -26,18 +33,18 @@ TEST(Open, RefusesTheRestWithTheListOfWhatThereIs) {
     const Error error = error_of([&] { open_device({.kind = kind}); });
     EXPECT_EQ(error.code(), Code::unsupported);
     EXPECT_TRUE(mentions(error, to_string(kind))) << error.what();
-    EXPECT_TRUE(mentions(error, "null, press, replay, path")) << error.what();
+    EXPECT_TRUE(mentions(error, "null, press, replay, path, hand")) << error.what();
   }
   EXPECT_EQ(error_of([] { open_device({.kind = DeviceKind::replay, .trajectory = "none.ctraj"}); }).code(), Code::io);
 }
 
 TEST(Open, NamesComeBack) {
-  for (const char* name : {"null", "press", "replay", "phantom", "custom", "path"})
+  for (const char* name : {"null", "press", "replay", "phantom", "custom", "path", "hand"})
     EXPECT_STREQ(to_string(device_kind(name)), name);
   const Error error = error_of([] { device_kind("mouse"); });
   EXPECT_EQ(error.code(), Code::unsupported);
   EXPECT_TRUE(mentions(error, "mouse"));
-  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom, path")) << error.what();
+  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom, path, hand")) << error.what();
 }
 
 }  // namespace

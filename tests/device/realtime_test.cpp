@@ -1,6 +1,7 @@
 // read and write must not allocate.
 #include <gtest/gtest.h>
 
+#include "crumble/device/hand.hpp"
 #include "crumble/device/recorder.hpp"
 #include "crumble/device/replay.hpp"
 #include "crumble/device/scripted.hpp"
@@ -26,7 +27,11 @@ TEST(RealTime, NoDeviceAllocatesInATick) {
   EXPECT_EQ(allocations_in_ticks(*open_null({}, 1e-3), 1000), 0u);
   EXPECT_EQ(allocations_in_ticks(*open_press({.depth = 1e-3}, 1e-3), 5000), 0u);  // past its end
   const PathOptions path{.points = {{.time = 0.5, .move = {0, 0.01, 0}}, {.time = 1, .turn = {1, 2, 3}}}};
-  EXPECT_EQ(allocations_in_ticks(*open_path(path, 1e-3), 2000), 0u);                                 // past its end
+  EXPECT_EQ(allocations_in_ticks(*open_path(path, 1e-3), 2000), 0u);  // past its end
+  HandOptions hand{.points = {{.time = 0.5, .move = {0, 0.01, 0}}, {.time = 1}}, .friction = 0.1, .delay = 7};
+  EXPECT_EQ(allocations_in_ticks(*open_hand(hand, 1e-3), 2000), 0u);
+  hand.encoder_step = 5e-5;
+  EXPECT_EQ(allocations_in_ticks(*open_hand(hand, 1e-3), 2000), 0u);                                 // past its end
   EXPECT_EQ(allocations_in_ticks(*open_replay(motion, {}, 1e-3), 10000), 0u);                        // past its end
   EXPECT_EQ(allocations_in_ticks(*open_replay(motion, {.end = EndPolicy::loop}, 1e-3), 20000), 0u);  // several laps
   Recorder recorder(open_null({}, 1e-3), 500);

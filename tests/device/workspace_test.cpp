@@ -83,6 +83,42 @@ TEST(Workspace, ScalesFeltStiffness) {
   EXPECT_LT(norm(felt({0.01, 0.02, -0.03}) - -0.5 * 9 * K * Vec3(0.01, 0.02, -0.03)), 1e-12);
 }
 
+// Any stiffness, one that pulls across its stretch too: what is felt is g s^2 R^T K R, entry by entry, and its force
+// and energy are those of the scene's spring.
+TEST(Workspace, MapsAStiffnessAsItMapsItsForce) {
+  Random random(11);
+  for (int i = 0; i < 1000; ++i) {
+    const WorkspaceOptions options{.pose = {random_vec(random, 1), random_quat(random)},
+                                   .scale = random.uniform(0.1, 10),
+                                   .force_gain = random.uniform(0, 2),
+                                   .mount = random_quat(random)};
+    const Workspace map(options);
+    const double g = options.force_gain, s = options.scale;
+    Mat3 K;
+    for (int row = 0; row < 3; ++row) K.row(row) = random_vec(random, 1000).transpose();
+    const Mat3 felt = map.stiffness_to_device(K);
+
+    Vec3 axis[3];  // of the device, in the scene
+    for (int a = 0; a < 3; ++a) axis[a] = options.pose.orientation * Vec3(Vec3::Unit(a));
+    const double bound = 1e-12 * (1 + g * s * s * 1000);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        double sum = 0;
+        for (int row = 0; row < 3; ++row)
+          for (int column = 0; column < 3; ++column) sum += axis[a][row] * K(row, column) * axis[b][column];
+        ASSERT_NEAR(felt(a, b), g * s * s * sum, bound) << a << b;
+      }
+    }
+
+    const Vec3 from = random_vec(random, 0.1), way = random_vec(random, 0.1);
+    const Vec3 stretch =
+        map.to_scene(Pose{from + way, Quat::Identity()}).position - map.to_scene(Pose{from, Quat::Identity()}).position;
+    const Vec3 force = rotate(K, stretch);  // rotate() is the product
+    ASSERT_NEAR(norm(map.force_to_device(force) - rotate(felt, way)), 0, bound);
+    ASSERT_NEAR(dot(way, rotate(felt, way)), g * dot(stretch, force), bound);
+  }
+}
+
 TEST(Workspace, VelocityIsTheDerivativeOfPosition) {
   const Workspace map({.pose = {{1, 2, 3}, axis_angle({0.6, 0, 0.8}, 2)}, .scale = 0.4});
   DeviceSample device;

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "crumble/device/hand.hpp"
 #include "crumble/device/replay.hpp"
 #include "crumble/device/scripted.hpp"
 
@@ -17,6 +18,7 @@ struct DeviceDef {
   Pose rest = {};               // kind null
   PressOptions press = {};      // kind press
   PathOptions path = {};        // kind path
+  HandOptions hand = {};        // kind hand
   ReplayOptions replay = {};    // kind replay
   std::string trajectory = {};  // kind replay: path of a .ctraj file
 };

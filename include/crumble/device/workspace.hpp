@@ -27,6 +27,8 @@ class Workspace {
   Vec3 force_to_device(const Vec3& force) const noexcept;
   /// N m to N m; angles do not scale, so neither does a torque: g R^T torque.
   Vec3 torque_to_device(const Vec3& torque) const noexcept;
+  /// N/m to N/m: g s^2 R^T K R.
+  Mat3 stiffness_to_device(const Mat3& stiffness) const noexcept;
 
  private:
   Pose pose_;

@@ -1,0 +1,16 @@
+// What a device is, as header lines of a trajectory: a replay has the limits of the device that was recorded, so that a
+// loop around it does what it did then.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "crumble/device/trajectory.hpp"
+
+namespace crumble::device {
+
+std::vector<std::string> info_lines(const DeviceInfo& info);
+/// Those that are there, over what `info` has. Throws Error(format) naming a line that does not read.
+void read_info_lines(const Trajectory& trajectory, DeviceInfo& info);
+
+}  // namespace crumble::device
