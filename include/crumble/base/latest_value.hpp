@@ -55,6 +55,8 @@ class LatestValue {
     front_ = between_.exchange(front_, std::memory_order_acq_rel) & kPlace;
     return true;
   }
+  /// fetch() would find one.
+  bool has_new() const noexcept { return (between_.load(std::memory_order_relaxed) & kNew) != 0; }
   /// The value that the last fetch() found. Stays as it is until the next.
   const T& front() const noexcept { return places_[front_].value; }
   /// Asks for a value; a writer that publishes without being asked need not look.

@@ -1,0 +1,75 @@
+// Where a tick gets the body's answer from: a step within it, or a model of a step that somebody else did.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "crumble/haptics/loop.hpp"
+
+namespace crumble::haptics {
+
+/// The body to one hand's tool.
+struct Answer {
+  Wrench wrench;                  // on the tool
+  Mat3 stiffness = Mat3::Zero();  // - d force / d translation, neighbours held, N/m
+  std::uint32_t contacts = 0;
+  bool engaged = false;     // the tool has been outside the body since it was last suspended, as of `order`
+  std::uint64_t order = 0;  // the tick whose poses this is the answer to
+};
+
+/// One bit for each hand.
+using HandMask = std::uint32_t;
+
+/// Does the steps, whoever calls: tells publishers and recording.
+class Stepper {
+ public:
+  Stepper(Simulation& sim, std::vector<std::uint32_t> holders) : sim_(sim), holders_(std::move(holders)) {}
+
+  /// Hands in `suspended` do not touch.
+  void step(std::span<const Pose> poses, HandMask suspended) noexcept;
+  /// All touch again, once they have been outside.
+  void resume() noexcept { suspend(0); }
+  const Simulation& sim() const noexcept { return sim_; }
+  std::size_t hand_count() const noexcept { return holders_.size(); }
+  std::uint32_t holder(std::size_t hand) const noexcept { return holders_[hand]; }
+
+  // While nobody steps
+  std::vector<StatePublisher*> publishers;
+  Recording* recording = nullptr;
+
+ private:
+  void suspend(HandMask hands) noexcept;
+  template <class Add>
+  void record(Add&& add) noexcept;
+
+  Simulation& sim_;
+  std::vector<std::uint32_t> holders_;
+  HandMask suspended_ = 0;  // in the last step
+};
+
+class BodyLink {
+ public:
+  virtual ~BodyLink() = default;
+
+  /// To the tool of `hand` if it stands at `tool`.
+  virtual Answer at(std::size_t hand, const Pose& tool) noexcept = 0;
+  /// The tools are at `poses` (by holder) in tick `order` (from 1).
+  virtual void advance(std::span<const Pose> poses, HandMask suspended, std::uint64_t order) noexcept = 0;
+  /// Time since the newest answer came, s; 0 where every tick has its own.
+  virtual double age() const noexcept = 0;
+  /// Of the newest step.
+  virtual Code status() const noexcept = 0;
+  virtual std::uint64_t steps() const noexcept = 0;
+  /// Simulated s.
+  virtual double time() const noexcept = 0;
+  /// The body's own thread, where it has one.
+  virtual void start() {}
+  virtual void stop() noexcept {}
+};
+
+std::unique_ptr<BodyLink> make_direct_link(Stepper& stepper);
+std::unique_ptr<BodyLink> make_model_link(Stepper& stepper, const LoopDef& def);
+
+}  // namespace crumble::haptics

@@ -1,0 +1,48 @@
+// What a loop is made of.
+#pragma once
+
+#include <deque>
+
+#include "crumble/base/shared_value.hpp"
+#include "haptics/body_link.hpp"
+#include "haptics/hand_channel.hpp"
+#include "haptics/periodic_thread.hpp"
+#include "haptics/watchdog.hpp"
+
+namespace crumble {
+
+struct HapticLoop::State {
+  State(Simulation& simulation, LoopDef definition);
+
+  void tick() noexcept;
+  bool skip_tick() noexcept;
+  haptics::HandMask suspended() const noexcept;
+  void report() noexcept;
+  void measure(double begin) noexcept;
+  void watch() noexcept;
+
+  LoopDef def;
+  std::vector<std::string> warnings;
+  Simulation& sim;
+  haptics::Stepper stepper;
+  std::unique_ptr<haptics::BodyLink> body;
+  std::deque<haptics::HandChannel> hands;
+  std::array<haptics::HandRequests, kMaxHands> requests;
+  std::vector<Pose> poses;  // by holder
+  std::vector<std::uint8_t> moved_by_hand;
+
+  haptics::DeviceGate gate;
+  haptics::PeriodicThread servo, watchdog;
+  Device* driving = nullptr;  // device that calls the ticks
+  std::atomic<bool> running{false};
+
+  // the ticking thread's
+  LoopStatus status;
+  double last_begin = 0, first_begin = 0;
+  std::atomic<std::uint64_t> watchdog_count{0};
+  std::atomic<double> rate{0};
+  Histogram wall, period;
+  SharedValue<LoopStatus> published;
+};
+
+}  // namespace crumble
