@@ -99,6 +99,7 @@ void HandChannel::feel(const Answer& answer, double age, Code body, std::uint64_
   let_in(answer);
   body_ = answer.wrench;
   contacts_ = touches(answer) ? answer.contacts : 0;
+  if (state_ == HandState::faulted) take_force_away();  // in every tick: who knows what the device made of the last
   energy_.sent(state_ == HandState::faulted ? EnergyObserver::Sent{} : push(answer, age));
 }
 

@@ -58,6 +58,20 @@ TEST(Faults, NotANumber) {
   }
 }
 
+TEST(Faults, BadSamplesBreakTheRow) {
+  LoopRig rig;
+  for (int k = 0; k < 10; ++k) {
+    rig.device.sample.pose.position.x() = 0;
+    rig.tick(60);
+    rig.device.sample.pose.position.x() = k % 2 ? 0.1 : NAN;
+    rig.tick();
+    rig.loop->reset_fault(0);
+    rig.device.sample.pose.position.x() = 0;
+    rig.tick(3);
+  }
+  EXPECT_EQ(rig.hand().state, HandState::waiting);
+}
+
 TEST(Faults, NoRotation) {
   Pressing rig;
   rig.device.sample.pose.orientation = Quat(2, 0, 0, 0);
@@ -216,12 +230,12 @@ TEST(Faults, AStepThatTakesForEverIsWatched) {
   hand.workspace.pose.position = {0.003, kTop + kRadius, 0.003};  // above a node
   def.hands = {hand};
   HapticLoop loop(sim, def);
-  loop.start();
-  for (int k = 0; k < 800; ++k) loop.tick();
+  for (int k = 0; k < 800; ++k) loop.tick();  // without the watchdog: a busy machine may take its time
   for (int k = 0; k < 300; ++k) device.sample.pose.position.y() -= 1e-5, loop.tick();
-  const double force = device.last_size;
-  ASSERT_GT(force, 0.02);
+  ASSERT_GT(device.last_size, 0.02);
 
+  loop.start();
+  loop.tick();
   const double before = wall_seconds();
   sleeper.seconds = 0.4;
   std::thread ticker([&] { loop.tick(); });
@@ -243,7 +257,6 @@ TEST(Faults, AHostThatStopsTickingIsWatchedToo) {
   Pressing rig;
   rig.loop->start();
   rig.tick();
-  ASSERT_GT(norm(rig.device.force), 0.1);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   rig.tick();
   rig.expect_faulted(Fault::stalled);
@@ -260,6 +273,9 @@ TEST(Faults, StopSendsZero) {
   EXPECT_FALSE(rig.loop->running());
   EXPECT_EQ(rig.hand().state, HandState::waiting);
   rig.loop->stop();
+  const Pose away{{0, 0.2, 0}, Quat::Identity()};
+  rig.sim.step({&away, 1});
+  EXPECT_TRUE(rig.sim.engaged(0));  // whoever steps it now touches again
   rig.loop->start();
   EXPECT_THROW(rig.loop->start(), Error);
   EXPECT_THROW(rig.loop->place(0, {}), Error);

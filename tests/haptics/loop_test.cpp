@@ -1,6 +1,9 @@
 // The loop as a whole: who gets a force, when, and from what.
 #include "crumble/haptics/loop.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "crumble/base/random.hpp"
 #include "crumble/device/recorder.hpp"
 #include "crumble/device/replay.hpp"
@@ -156,6 +159,33 @@ TEST(Loop, TheLocalModelFollowsTheHandBetweenSteps) {
   EXPECT_EQ(local_changes, 90);
   EXPECT_EQ(paper_changes, 30);  // held
   EXPECT_EQ(local.loop->status().steps, local.loop->status().ticks / 3);
+}
+
+// A hand that holds still over a body that gives way: each model has a little less force than the one before, and the
+// difference is spread over the ticks till the next.
+TEST(Loop, TheLocalModelChangesWithoutSteps) {
+  SimulationDef body = small_body();
+  body.step.tau = 4e-3;
+  LoopRig rig(
+      [](LoopDef& def) {
+        def.coupling = BodyCoupling::local_model;
+        def.body_ticks = 4;
+        def.hands[0].coupling.enabled = def.hands[0].passivity.inject_damping = false;
+      },
+      body);
+  rig.let_in();
+  rig.move_to(-0.003, 0.1);
+  rig.tick(20);
+  std::vector<double> falls;
+  for (int k = 0; k < 40; ++k) {
+    const double before = rig.device.force.y();
+    rig.tick();
+    falls.push_back(before - rig.device.force.y());
+  }
+  const double least = *std::min_element(falls.begin(), falls.end()),
+               most = *std::max_element(falls.begin(), falls.end());
+  EXPECT_GT(least, 0);
+  EXPECT_LT(most, 3 * least);
 }
 
 TEST(Loop, ThePaperCouplingReportsTheMeanOfFive) {

@@ -118,8 +118,9 @@ TEST(ForceGuard, TheRampGoesUpSlowlyAndDownIn20Milliseconds) {
   for (int k = 1; k <= 500; ++k) EXPECT_NEAR(stage.tick({1, 0, 0}).x(), std::min(1.0, k / 500.0), 1e-9);
   stage.base.let_in = false;
   for (int k = 1; k <= 20; ++k) EXPECT_NEAR(stage.tick({1, 0, 0}).x(), 1 - k / 20.0, 1e-9);
-  stage.guard.drop();
   stage.base.let_in = true;
+  for (int k = 0; k < 600; ++k) stage.tick({1, 0, 0});
+  stage.guard.drop();
   EXPECT_NEAR(stage.tick({1, 0, 0}).x(), 1 / 500.0, 1e-12);
 }
 
