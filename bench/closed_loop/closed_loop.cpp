@@ -11,9 +11,9 @@
 namespace crumble::closed_loop {
 namespace {
 
-constexpr double kClearance = 1e-3, kDepth = 6e-3;  // m
-constexpr double kWait = 0.8, kMove = 1;            // s; the loop lets nothing in before it has seen 100 samples
-constexpr double kLook = 2;                         // s, of the hold
+constexpr double kClearance = 1e-3;       // m
+constexpr double kWait = 0.8, kMove = 1;  // s; the loop lets nothing in before it has seen 100 samples
+constexpr double kLook = 2;               // s, of the hold
 
 Simulation make_body(const Case& c, const Setup& setup, Pose& start) {
   static const Scene scene = load_scene("tofu_cube", Preset::standard);  // the mesh takes its time
@@ -36,7 +36,7 @@ Times times_of(const Setup& setup) {
 }
 
 std::vector<HandPoint> motion(const Setup& setup) {
-  const double deep = -(kClearance + kDepth), side = setup.lateral ? 1e-3 : 0;
+  const double deep = -(kClearance + setup.depth), side = setup.lateral ? 1e-3 : 0;
   const Times t = times_of(setup);
   return {{kWait, Vec3::Zero()},
           {kWait + 0.4 * kMove, {side, 0.4 * deep, -side}},
@@ -143,10 +143,14 @@ Outcome press(const Case& c, const Setup& setup) {
   Outcome out;
   Hold hold;
   std::optional<std::uint64_t> cuts_before;
+  Vec3 lag_before = Vec3::Zero();
   for (std::uint64_t k = 0; k < ticks; ++k) {
     loop.tick();
     const double time = static_cast<double>(k) * c.tick;
     const HandStatus status = loop.status().hands[0];
+    const Vec3 lag = status.tool.position - status.device.position;
+    out.tool_jumps += k > 0 && norm(lag - lag_before) > 1e-4;
+    lag_before = lag;
     out.least_energy = std::min(out.least_energy, hand.energy_given());
     out.peak_force = std::max(out.peak_force, norm(status.force));
     out.stiffness = std::max(out.stiffness, status.stiffness);

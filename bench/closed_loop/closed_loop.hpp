@@ -48,17 +48,19 @@ struct Setup {
   double encoder_step = 0;  // m
   bool lateral = false;     // the hand also moves to the sides, and the stick has friction
   double hold = 5;          // s
+  double depth = 6e-3;      // m, that the hand wants to press
 };
 
 struct Outcome {
-  double least_energy = 0;      // J: least of what the hand has given, at any time; below 0 it was given energy
-  double observed_least = 0;    // J: the same as the loop's observer has it
-  double hold_speed = 0;        // m/s, rms over the last two seconds of the hold
-  double hold_span = 0;         // m, peak to peak, likewise; the axis where it is greatest
-  double hold_force_span = 0;   // N, of the force sent, peak to peak, likewise
-  double peak_force = 0;        // N
-  double depth = 0;             // m, of the hand below the first touch, at the end of the hold
-  std::uint64_t hold_cuts = 0;  // springs that broke during the hold
+  double least_energy = 0;       // J: least of what the hand has given, at any time; below 0 it was given energy
+  double observed_least = 0;     // J: the same as the loop's observer has it
+  double hold_speed = 0;         // m/s, rms over the last two seconds of the hold
+  double hold_span = 0;          // m, peak to peak, likewise; the axis where it is greatest
+  double hold_force_span = 0;    // N, of the force sent, peak to peak, likewise
+  double peak_force = 0;         // N
+  std::uint64_t tool_jumps = 0;  // ticks in which the tool moved by 0.1 mm more or less than the device
+  double depth = 0;              // m, of the hand below the first touch, at the end of the hold
+  std::uint64_t hold_cuts = 0;   // springs that broke during the hold
   std::uint64_t cuts = 0;
   double required_damping = 0;  // N s/m
   std::uint64_t capped = 0;     // ticks in which less was injected than that

@@ -14,6 +14,7 @@ namespace crumble::haptics {
 struct Answer {
   Wrench wrench;                  // on the tool
   Mat3 stiffness = Mat3::Zero();  // - d force / d translation, neighbours held, N/m
+  Mat3 holding = Mat3::Zero();    // the same if no contact slid
   std::uint32_t contacts = 0;
   bool engaged = false;     // the tool has been outside the body since it was last suspended, as of `order`
   std::uint64_t order = 0;  // the tick whose poses this is the answer to

@@ -15,7 +15,7 @@ class DirectLink final : public BodyLink {
     for (std::size_t hand = 0; hand < answers_.size(); ++hand) {
       const std::uint32_t holder = stepper_.holder(hand);
       const LocalModel model = sim.local_model(holder);
-      answers_[hand] = {sim.wrench(holder), model.stiffness, model.contacts, sim.engaged(holder), order};
+      answers_[hand] = {sim.wrench(holder), model.stiffness, model.holding, model.contacts, sim.engaged(holder), order};
     }
   }
   double age() const noexcept override { return 0; }

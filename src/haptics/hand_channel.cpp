@@ -66,7 +66,7 @@ void HandChannel::follow_hand() noexcept {
 const Pose& HandChannel::move_tool(const Answer& answer) noexcept {
   tool_ = scene_;
   if (def_.coupling.enabled && touches(answer)) {
-    tool_.position = coupling_.move(scene_.position, answer.wrench.force, answer.stiffness, mean_);
+    tool_.position = coupling_.move(scene_.position, answer.wrench.force, answer.holding, mean_);
   } else {
     coupling_.place(scene_.position);
   }

@@ -71,7 +71,7 @@ class ModelLink final : public BodyLink {
     Wrench wrench = force_of(h, tool);
     const bool lets_go = wrench.force == Vec3::Zero() && wrench.torque == Vec3::Zero();
     if (!paper_ && !lets_go) wrench = smooth(hand);
-    return {wrench, h.model.stiffness, lets_go ? 0 : h.model.contacts, h.engaged, packet.order};
+    return {wrench, h.model.stiffness, h.model.holding, lets_go ? 0 : h.model.contacts, h.engaged, packet.order};
   }
 
   void advance(std::span<const Pose> poses, HandMask suspended, std::uint64_t order) noexcept override {

@@ -30,10 +30,10 @@ void HapticLoop::State::tick() noexcept {
     hands[i].feel(body->at(i, hands[i].tool()), age, body->status(), order);
   }
   gate.wrote(wall_seconds());
-  gate.leave();
 
   // (5) and everybody may know
   report();
+  gate.leave();
   measure(begin);
 }
 

@@ -159,9 +159,11 @@ void Simulation::add_to_model(LocalModel& model, const NodeConstraint& c) const 
   LocalContact contact = springs_of_contact(c);
   contact.arm = solver_->position(c.node) - model.at.position;
   const Vec3 pull = contact.force + contact.inner;
-  if (c.state == ContactState::attached) return keep(model, contact, pull, false);
+  const Mat3 holding = contact.stiffness;
+  if (c.state == ContactState::attached) return model.holding += holding, keep(model, contact, pull, false);
   const double pressing = -dot(pull, c.normal);
   if (!(pressing > 0)) return;
+  model.holding += holding;
   const bool slides = norm(pull + pressing * c.normal) > contact.grip * pressing;
   if (slides) {  // only the normal moves it
     contact.grip = c.dynamic_friction;

@@ -20,7 +20,8 @@ using render::TemporaryFolder;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kStepBytes = 7 * 8;  // a pose
-constexpr std::size_t kTail = 8 + 8 + 8;   // the numbers of changes to fragments and to forces, none; the checksum
+constexpr std::size_t kTail =
+    8 + 8 + 8 + 8;  // the numbers of changes to fragments, forces and contact, none; the checksum
 
 class RecordingTest : public testing::Test {
  protected:

@@ -59,6 +59,17 @@ TEST_P(ClosedLoop, DampingAloneWarnsWhereItDoesNotSuffice) {
 INSTANTIATE_TEST_SUITE_P(Grips, ClosedLoop, testing::Values(kLoose, kFirm, kBare),
                          [](const auto& grip) { return std::string(grip.param.name); });
 
+// Deep in the body, with friction: the tool hangs quietly between hand and body, though all its contacts slide. (It ran
+// to and fro by 0.9 mm a tick once, and the hand felt nothing but that.)
+TEST(ClosedLoopWith, FrictionTheToolDoesNotRunToAndFro) {
+  LoopSetup setup = default_setup();
+  setup.lateral = true, setup.depth = 0.022, setup.hold = 1;
+  const Outcome o = press({{"rigid", 1, 20000, 200}, 30, 1e-3, false, 0}, setup);
+  EXPECT_GT(o.cuts, 50u);
+  EXPECT_LT(o.tool_jumps, 300u);
+  EXPECT_EQ(o.fault, Fault::none);
+}
+
 // The tests above have teeth: without what they test, many of the same loops fail.
 TEST(ClosedLoopWithout, StabiliserManyFail) {
   int failed = 0;

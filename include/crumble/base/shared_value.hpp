@@ -1,10 +1,11 @@
 // The newest value, from one thread to any number of readers, without the writer ever waiting.
 //
-// A sequence lock (Boehm, Can Seqlocks Get Along With Programming Language Memory Models?, MSPC 2012, fig. 6). The
-// writer makes the count odd, writes the words, makes it even. A reader that saw the same even count before and after
-// it copied the words has them of one value; else it copies again. The words are relaxed atomics, so that a copy that
-// races is no undefined behaviour, only thrown away. For values that several threads want; where there is one reader
-// and the value is large, base/latest_value.hpp copies nothing.
+// A sequence lock (Boehm, Can Seqlocks Get Along With Programming Language Memory Models?, MSPC 2012). The writer makes
+// the count odd, writes the words, makes it even. A reader that saw the same even count before and after it copied the
+// words has them of one value; else it copies again. The words are atomics, so that a copy that races is no undefined
+// behaviour, only thrown away: each is released after the odd count, so whoever acquires one sees that count, or a
+// later one, when it looks again. For values that several threads want; where there is one reader and the value is
+// large, base/latest_value.hpp copies nothing.
 #pragma once
 
 #include <array>
@@ -29,8 +30,7 @@ class SharedValue {
     std::memcpy(words.data(), static_cast<const void*>(&value), sizeof value);
     const std::uint64_t count = count_.load(std::memory_order_relaxed);
     count_.store(count + 1, std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_release);
-    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     count_.store(count + 2, std::memory_order_release);
   }
 
@@ -39,8 +39,7 @@ class SharedValue {
     std::array<std::uint64_t, kWords> words;
     while (true) {
       const std::uint64_t before = count_.load(std::memory_order_acquire);
-      for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_relaxed);
-      std::atomic_thread_fence(std::memory_order_acquire);
+      for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
       if (before % 2 == 0 && before == count_.load(std::memory_order_relaxed)) break;
     }
     T value;

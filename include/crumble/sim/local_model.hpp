@@ -40,6 +40,7 @@ struct LocalModel {
   Wrench wrench;                  // there: what the next step gives if the tool stays. Eq (7)'s mean is not in it
   WrenchJacobian jacobian{};      // what turning does to the arms of the forces is not in it (evaluate() has it)
   Mat3 stiffness = Mat3::Zero();  // - d force / d translation, N/m: what a servo loop has to damp
+  Mat3 holding = Mat3::Zero();    // the same if no contact slid: what it will be when the tool turns back
   double radius = kReach;         // m
   double held_drag = 0;           // see Simulation::held_drag
   bool fracture = false;          // the step cut springs: a fall of the force is the signal
