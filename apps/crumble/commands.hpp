@@ -11,5 +11,7 @@ void add_replay(CLI::App& app);
 void add_export(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_patterns(CLI::App& app);
+void add_loop(CLI::App& app);
+void add_zwidth(CLI::App& app);
 
 }  // namespace crumble::app

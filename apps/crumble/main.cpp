@@ -11,7 +11,7 @@ namespace {
 std::string version_text() {
   std::string text = "crumble " CRUMBLE_VERSION ", built by " CRUMBLE_COMPILER "\nprecision: float64 float32\nkernels:";
   for (const std::string& name : crumble::kernel_names()) text += " " + name;
-  text += "\nthreads: 1 to 64\ndevices: press replay\nscenes:";
+  text += "\nthreads: 1 to 64\ndevices: press replay hand\nscenes:";
   for (const std::string& name : crumble::scene_names()) text += " " + name;
   return text;
 }
@@ -28,6 +28,8 @@ int main(int argc, char** argv) {
   crumble::app::add_export(app);
   crumble::app::add_bench(app);
   crumble::app::add_patterns(app);
+  crumble::app::add_loop(app);
+  crumble::app::add_zwidth(app);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const crumble::Error& error) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstring>
 #include <span>
+#include <string>
 
 #include "call.hpp"
 #include "crumble/base/vec_array.hpp"
@@ -55,6 +57,13 @@ crumble_result deliver(const Call& call, std::uint64_t bytes, void* dst, std::ui
   }
   write(dst);
   return CRUMBLE_OK;
+}
+
+/// A text, with a zero behind it.
+inline crumble_result deliver(const Call& call, const std::string& text, char* dst, std::uint64_t dst_bytes,
+                              std::uint64_t* needed) {
+  return deliver(call, text.size() + 1, dst, dst_bytes, needed,
+                 [&](void* to) { std::memcpy(to, text.c_str(), text.size() + 1); });
 }
 
 /// An array of the group CRUMBLE_ARRAY_SURFACE_. Throws Error(out_of_range).

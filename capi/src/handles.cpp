@@ -1,6 +1,7 @@
 #include "handles.hpp"
 
 #include <bit>
+#include <thread>
 
 #include "crumble/base/error.hpp"
 
@@ -37,14 +38,22 @@ HandleTable::Slot* HandleTable::find(std::uint32_t index) const noexcept {
   return chunk ? chunk + place.offset : nullptr;
 }
 
-crumble_result HandleTable::acquire(const void* handle, void*& object) noexcept {
+// `alive`: the slot's state as long as the object lives.
+crumble_result HandleTable::find_alive(const void* handle, Slot*& slot, std::uint32_t& alive) const noexcept {
   if (bits(handle) >> (layout_.index_bits + layout_.generation_bits) != kind_) return CRUMBLE_E_BAD_HANDLE;
-  Slot* const slot = find(index_of(handle));
+  slot = find(index_of(handle));
   const std::uint32_t generation = generation_of(handle);
   if (!slot || generation == 0) return CRUMBLE_E_BAD_HANDLE;
-  const std::uint32_t alive = generation * 2 + 1;
+  alive = generation * 2 + 1;
   const std::uint32_t state = slot->state.load(std::memory_order_acquire);
-  if (state != alive) return generation <= state / 2 ? CRUMBLE_E_STALE_HANDLE : CRUMBLE_E_BAD_HANDLE;
+  if (state == alive) return CRUMBLE_OK;
+  return generation <= state / 2 ? CRUMBLE_E_STALE_HANDLE : CRUMBLE_E_BAD_HANDLE;
+}
+
+crumble_result HandleTable::acquire(const void* handle, void*& object) noexcept {
+  Slot* slot = nullptr;
+  std::uint32_t alive = 0;
+  if (const crumble_result result = find_alive(handle, slot, alive); result != CRUMBLE_OK) return result;
   if (slot->busy.exchange(true, std::memory_order_acquire)) return CRUMBLE_E_BUSY;
   if (slot->state.load(std::memory_order_relaxed) != alive) {  // destroyed between the two looks
     slot->busy.store(false, std::memory_order_release);
@@ -56,6 +65,24 @@ crumble_result HandleTable::acquire(const void* handle, void*& object) noexcept 
 
 void HandleTable::release(const void* handle) noexcept {
   find(index_of(handle))->busy.store(false, std::memory_order_release);
+}
+
+// Either remove() sees that somebody looks, or the look sees that the object is gone: both in one order of all threads.
+crumble_result HandleTable::look(const void* handle, void*& object) noexcept {
+  Slot* slot = nullptr;
+  std::uint32_t alive = 0;
+  if (const crumble_result result = find_alive(handle, slot, alive); result != CRUMBLE_OK) return result;
+  slot->lookers.fetch_add(1, std::memory_order_seq_cst);
+  if (slot->state.load(std::memory_order_seq_cst) != alive) {
+    leave(handle);
+    return CRUMBLE_E_STALE_HANDLE;
+  }
+  object = slot->object;
+  return CRUMBLE_OK;
+}
+
+void HandleTable::leave(const void* handle) noexcept {
+  find(index_of(handle))->lookers.fetch_sub(1, std::memory_order_release);
 }
 
 std::uint32_t HandleTable::take_free_index() {
@@ -86,8 +113,9 @@ void* HandleTable::insert(void* object) {
 void HandleTable::remove(const void* handle) noexcept {
   const std::uint32_t index = index_of(handle), generation = generation_of(handle);
   Slot& slot = *find(index);
+  slot.state.store(generation * 2, std::memory_order_seq_cst);
+  while (slot.lookers.load(std::memory_order_seq_cst) != 0) std::this_thread::yield();
   slot.object = nullptr;
-  slot.state.store(generation * 2, std::memory_order_release);
   slot.busy.store(false, std::memory_order_release);
   if (generation == last_generation()) return;
   const std::lock_guard lock(mutex_);

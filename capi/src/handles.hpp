@@ -5,8 +5,9 @@
 // apart from a living object without touching memory that is not the table's own. Slots are never given back, a slot's
 // generation grows with every object that lives in it, and a slot whose generations are used up is left alone.
 //
-// A look-up takes the object for one thread: one load, one exchange, one load; no lock, no wait. Only making and
-// destroying objects goes through a mutex.
+// A look-up takes the object for one thread: one load, one exchange, one load; no lock, no wait. What any thread may
+// ask while another is at work in the object looks at it instead: such looks are counted, and who destroys the object
+// first lets the last of them end. Only making and destroying objects goes through a mutex.
 #pragma once
 
 #include <array>
@@ -38,13 +39,19 @@ class HandleTable {
   /// CRUMBLE_E_BAD_HANDLE, _STALE_HANDLE or _BUSY.
   crumble_result acquire(const void* handle, void*& object) noexcept;
   void release(const void* handle) noexcept;
-  /// Makes an acquired handle stale and gives its slot free; the object is the caller's again.
+  /// Keeps the object alive for a moment, whoever has taken it. On CRUMBLE_OK the caller must leave() it, soon; else
+  /// CRUMBLE_E_BAD_HANDLE or _STALE_HANDLE.
+  crumble_result look(const void* handle, void*& object) noexcept;
+  void leave(const void* handle) noexcept;
+  /// Makes an acquired handle stale, waits for those who look, and gives its slot free; the object is the caller's
+  /// again.
   void remove(const void* handle) noexcept;
 
  private:
   struct Slot {
     std::atomic<std::uint32_t> state{0};  // last generation given out, doubled; + 1 while its object lives
     std::atomic<bool> busy{false};
+    std::atomic<std::uint32_t> lookers{0};
     std::uint32_t next_free = 0;
     void* object = nullptr;
   };
@@ -52,6 +59,7 @@ class HandleTable {
   static constexpr std::uint32_t kFirstChunk = 64;  // slots; each further chunk has twice as many as the one before
 
   Slot* find(std::uint32_t index) const noexcept;
+  crumble_result find_alive(const void* handle, Slot*& slot, std::uint32_t& alive) const noexcept;
   std::uint32_t index_of(const void* handle) const noexcept;
   std::uint32_t generation_of(const void* handle) const noexcept;
   std::uint32_t take_free_index();

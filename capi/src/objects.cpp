@@ -24,7 +24,7 @@ crumble_result fail_handle(const Call& call, const char* name, const void* handl
     case CRUMBLE_E_STALE_HANDLE:
       return call.fail(result, {name, " has been destroyed"});
     case CRUMBLE_E_BUSY:
-      return call.fail(result, {name, " is in use by another thread"});
+      return call.fail(result, {name, " is in use by another thread or by a loop that runs"});
     default:
       return call.fail(result, {name, " is no handle of this kind: ", value});
   }

@@ -1,6 +1,7 @@
 // What the handles stand for.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -41,6 +42,7 @@ struct Sim {
   std::optional<Recording> recording;
   std::unique_ptr<SurfaceExtractor> surface;  // from the first extraction on
   std::vector<std::shared_ptr<ReaderLink>> readers;
+  std::atomic<std::uint32_t> loops{0};  // that need it
 };
 
 /// Gives an object to the caller: the handle in `out`.
@@ -68,15 +70,38 @@ crumble_result with(const char* function, typename Object::Handle handle, Body&&
   });
 }
 
+/// Runs `body(object, call)` whoever is at work in the object: for what any thread may do, quickly.
+template <class Object, class Body>
+crumble_result look(const char* function, typename Object::Handle handle, Body&& body) noexcept {
+  return guard(function, [&](const Call& call) -> crumble_result {
+    struct Seen {
+      const void* handle;
+      ~Seen() { Object::table.leave(handle); }
+    };
+    void* object = nullptr;
+    const crumble_result result = handle ? Object::table.look(handle, object) : CRUMBLE_E_NULL;
+    if (result != CRUMBLE_OK) return fail_handle(call, Object::kName, handle, result);
+    const Seen seen{handle};
+    return body(*static_cast<Object*>(object), call);
+  });
+}
+
 template <class Object>
 crumble_result destroy(const char* function, typename Object::Handle handle) noexcept {
   return guard(function, [&](const Call& call) -> crumble_result {
     if (!handle) return CRUMBLE_OK;
-    void* object = nullptr;
-    const crumble_result result = Object::table.acquire(handle, object);
+    void* found = nullptr;
+    const crumble_result result = Object::table.acquire(handle, found);
     if (result != CRUMBLE_OK) return fail_handle(call, Object::kName, handle, result);
+    auto* const object = static_cast<Object*>(found);
+    if constexpr (requires { object->loops; }) {
+      if (const std::uint32_t loops = object->loops; loops > 0) {
+        Object::table.release(handle);
+        return call.fail(CRUMBLE_E_IN_USE, {"the ", Object::kName, " has ", loops, " loops: destroy them first"});
+      }
+    }
     Object::table.remove(handle);
-    delete static_cast<Object*>(object);
+    delete object;
     return CRUMBLE_OK;
   });
 }

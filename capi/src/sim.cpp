@@ -31,6 +31,9 @@ void set_up(Sim& sim, Change&& change) {
     throw Error(Code::in_use,
                 "the simulation has " + std::to_string(sim.readers.size()) + " readers: destroy them first");
   }
+  if (const std::uint32_t loops = sim.loops; loops > 0) {
+    throw Error(Code::in_use, "the simulation has " + std::to_string(loops) + " loops: destroy them first");
+  }
   SimulationDef def = sim.simulation.definition();
   change(def);
   sim.poses.reserve(def.tools.size() + def.attachments.size());

@@ -1,6 +1,10 @@
 // Handles: the table itself with small numbers, then every misuse of the API's handles.
 #include "handles.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "capi/rig.hpp"
 #include "crumble/base/random.hpp"
 
@@ -56,6 +60,31 @@ TEST(HandleTable, HoldsAnObjectForOneCallerAtATime) {
   EXPECT_RESULT(CRUMBLE_E_BUSY, table.acquire(handle, found));
   table.release(handle);
   EXPECT_RESULT(CRUMBLE_OK, table.acquire(handle, found));
+}
+
+// Whoever looks needs the object alive, not for himself: only its removal has to wait.
+TEST(HandleTable, IsLookedAtWhileTaken) {
+  static constinit HandleTable table(3);
+  int object = 0;
+  void *const handle = table.insert(&object), *found = nullptr, *seen = nullptr;
+  ASSERT_OK(table.acquire(handle, found));
+  ASSERT_OK(table.look(handle, seen));
+  EXPECT_EQ(seen, &object);
+  EXPECT_RESULT(CRUMBLE_OK, table.look(handle, seen));
+  table.leave(handle);
+  std::atomic<bool> removed = false;
+  std::thread remover([&] {
+    table.remove(handle);
+    removed = true;
+  });
+  while (table.look(handle, seen) == CRUMBLE_OK) table.leave(handle);  // until it is stale
+  EXPECT_RESULT(CRUMBLE_E_STALE_HANDLE, table.look(handle, seen));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_FALSE(removed) << "somebody still looks";
+  table.leave(handle);
+  remover.join();
+  EXPECT_TRUE(removed);
+  EXPECT_RESULT(CRUMBLE_E_BAD_HANDLE, table.look(&object, seen));
 }
 
 class Handles : public CapiTest {

@@ -72,7 +72,7 @@ enum {
   CRUMBLE_E_VERSION = -5,           /* a struct, file or snapshot that this library does not know */
   CRUMBLE_E_BAD_HANDLE = -6,        /* no handle of this kind */
   CRUMBLE_E_STALE_HANDLE = -7,      /* its object has been destroyed */
-  CRUMBLE_E_BUSY = -8,              /* another thread is in this object */
+  CRUMBLE_E_BUSY = -8,              /* another thread is in this object, or a loop that runs */
   CRUMBLE_E_IN_USE = -9,            /* another object needs this one */
   CRUMBLE_E_BUFFER_TOO_SMALL = -10, /* the needed size has been written */
   CRUMBLE_E_NO_MEMORY = -11,
@@ -774,6 +774,424 @@ CRUMBLE_API crumble_result crumble_reader_spread_over_skin(crumble_reader reader
  * 16384 can wait; what comes on top is dropped and counted. No update needed. [one] */
 CRUMBLE_API crumble_result crumble_reader_read_events(crumble_reader reader, crumble_event *events, uint32_t capacity,
                                                       uint32_t *count);
+
+/* ---- Devices ---------------------------------------------------------------------------------------------------- */
+
+/* A haptic device, or what stands in for one: a sample comes out of it, a force goes into it. It is open from its
+ * construction on. Positions, velocities and forces are in the device's own right-handed frame: x right, y up, z
+ * towards the user; the workspace of crumble_hand_def maps that frame to the scene.
+ * A loop that runs has its devices to itself (CRUMBLE_E_BUSY); while a loop exists its devices cannot be destroyed. */
+typedef struct crumble_device_t *crumble_device;
+
+enum {
+  CRUMBLE_DEVICE_NULL = 0,    /* a pose that never moves */
+  CRUMBLE_DEVICE_PRESS = 1,   /* a scripted straight press */
+  CRUMBLE_DEVICE_REPLAY = 2,  /* a trajectory from a file */
+  CRUMBLE_DEVICE_PHANTOM = 3, /* 3D Systems PHANToM / Touch: not in this build */
+  CRUMBLE_DEVICE_CUSTOM = 4,  /* the host's own, by callbacks */
+  CRUMBLE_DEVICE_PATH = 5,    /* scripted moves and turns */
+  CRUMBLE_DEVICE_HAND = 6     /* a simulated hand that holds a simulated device: the one that feels the force */
+};
+
+/* What a device senses. */
+enum {
+  CRUMBLE_SENSES_POSITION = 1,
+  CRUMBLE_SENSES_ORIENTATION = 2,
+  CRUMBLE_SENSES_LINEAR_VELOCITY = 4,
+  CRUMBLE_SENSES_ANGULAR_VELOCITY = 8,
+  CRUMBLE_SENSES_BUTTONS = 16
+};
+
+/* How a device runs. */
+enum {
+  CRUMBLE_DEVICE_STEP_LOCKED = 1, /* read k is tick k, whatever the wall clock says */
+  CRUMBLE_DEVICE_SERVO_DRIVEN = 2 /* has a thread of its own that calls the tick: see CRUMBLE_DRIVER_DEVICE */
+};
+
+/* What came of a read. */
+enum {
+  CRUMBLE_READ_OK = 0,
+  CRUMBLE_READ_NO_NEW_SAMPLE = 1, /* the rest of the sample means nothing */
+  CRUMBLE_READ_FINISHED = 2       /* the motion is over; the last pose, held at rest */
+};
+
+/* Of a sample. */
+enum {
+  CRUMBLE_SAMPLE_RESAMPLED = 1,    /* interpolated between recorded rows, not recorded at this time */
+  CRUMBLE_SAMPLE_FINISHED = 2,     /* with CRUMBLE_READ_FINISHED */
+  CRUMBLE_SAMPLE_UNCALIBRATED = 4, /* the pose means nothing yet: a loop waits and gives no force */
+  CRUMBLE_SAMPLE_HELD = 8          /* not given by devices */
+};
+
+/* Everything that belongs to one instant, device frame. */
+typedef struct crumble_device_sample {
+  uint32_t struct_size;
+  uint32_t status;   /* CRUMBLE_READ_ */
+  uint32_t buttons;  /* bit set: pressed */
+  uint32_t flags;    /* CRUMBLE_SAMPLE_ bits */
+  uint64_t sequence; /* counts from 0; a gap means samples that nobody read */
+  double time;       /* s since the device was opened, by its own clock */
+  crumble_pose pose;
+  double linear_velocity[3];  /* m/s */
+  double angular_velocity[3]; /* rad/s */
+  double motor_temperature;   /* of the hottest motor, 0 cold to 1 its limit; 0 where it is not sensed */
+} crumble_device_sample;
+
+/* A limit of 0 is one that the device does not tell. */
+typedef struct crumble_device_info {
+  uint32_t struct_size;
+  uint32_t kind;            /* CRUMBLE_DEVICE_ */
+  uint32_t measured;        /* CRUMBLE_SENSES_ bits; the rest of a sample is derived or zero */
+  uint32_t flags;           /* CRUMBLE_DEVICE_STEP_LOCKED, _SERVO_DRIVEN */
+  char name[64];            /* for people, UTF-8, ends with a zero */
+  double rate;              /* nominal samples per second */
+  double max_force;         /* N, peak */
+  double continuous_force;  /* N, that the motors bear for long */
+  double max_torque;        /* N m; 0 also when it has no motors for it */
+  double max_stiffness;     /* N/m that its maker holds for stable at 1 kHz */
+  double max_damping;       /* N s/m, likewise */
+  double max_speed;         /* m/s, beyond which its driver stops */
+  double mass;              /* kg, apparent at the tip */
+  double friction_damping;  /* N s/m of its own, at least */
+  double position_step;     /* m, of its encoders at the tip */
+  double workspace_low[3];  /* m, device frame: corners of where it can be used; ... */
+  double workspace_high[3]; /* ... equal ones: everywhere */
+  int32_t callback_error;   /* custom: what a callback answered when the device was lost; else 0 */
+  uint32_t reserved;        /* 0 */
+} crumble_device_info;
+
+/* Calls the loop for one tick; read and write are called from within. 0: do not call again. */
+typedef uint32_t (*crumble_device_tick)(void *tick_context);
+
+/* A device of the host's own. Each callback gets `user` last and returns a crumble_result: any value but CRUMBLE_OK
+ * means that the device is lost from then on; `write` is still called then, with zeros. They are called from one thread
+ * at a time: from that which calls crumble_device_read and _write, crumble_loop_tick, or from that of the loop; `read`
+ * and `write` must not take memory or block when a loop is to keep its time. They may call what is [any]. They do not
+ * bypass the safety stages: a loop believes no sample and sends no force without them. Zero is written by
+ * crumble_loop_stop, and by the watchdog's thread when ticks stay out. */
+typedef struct crumble_device_callbacks {
+  uint32_t struct_size;
+  uint32_t measured; /* CRUMBLE_SENSES_ bits; default position alone */
+  uint32_t flags;    /* CRUMBLE_DEVICE_STEP_LOCKED, _SERVO_DRIVEN; default 0 */
+  uint32_t reserved; /* keep 0 */
+  void *user;        /* given to the callbacks; must outlive the device */
+  /* Fills `sample`, which comes with status CRUMBLE_READ_OK, a unit orientation, its number and zeros. Required. */
+  crumble_result (*read)(crumble_device_sample *sample, void *user);
+  /* Force (3), N, and torque (3), N m, on the hand, device frame, until the next write. Required. */
+  crumble_result (*write)(const double *force, const double *torque, void *user);
+  /* With CRUMBLE_DEVICE_SERVO_DRIVEN, required then: call tick(tick_context) from now on in a thread of the host's
+   * every period, until it answers 0 or `stop` is called, which returns when the last call has. */
+  crumble_result (*start)(crumble_device_tick tick, void *tick_context, void *user);
+  crumble_result (*stop)(void *user);
+  const char *name; /* UTF-8; copied; NULL (default): "custom device" */
+  double rate;      /* this and the following as in crumble_device_info; finite and not negative; default 0 */
+  double max_force;
+  double continuous_force;
+  double max_torque;
+  double max_stiffness;
+  double max_damping;
+  double max_speed;
+  double mass;
+  double friction_damping;
+  double position_step;
+  double workspace_low[3];
+  double workspace_high[3]; /* not below workspace_low */
+} crumble_device_callbacks;
+
+/* Where a scripted motion comes by. This struct never changes its size. */
+typedef struct crumble_motion_point {
+  double time;    /* s, from 0 on, increasing from point to point */
+  double move[3]; /* m, from where it started */
+  double turn[3]; /* path: unit axis times radians, from how it stood when it started, about its own origin */
+} crumble_motion_point;
+
+/* One struct for all kinds, so that a program changes nothing but `kind`; what another kind needs is not looked at. */
+typedef struct crumble_device_def {
+  uint32_t struct_size;
+  uint32_t kind;             /* CRUMBLE_DEVICE_; default null */
+  double tick;               /* all but custom: s from read to read; > 0; default 0.001 */
+  crumble_pose start;        /* null, press, path, hand: device frame; default the origin */
+  double press_direction[3]; /* any length but 0; default 0, -1, 0 */
+  double press_speed;        /* m/s; > 0; default 0.001 */
+  double press_depth;        /* m; > 0; default 0.03 */
+  double press_hold;         /* s that it then stays; >= 0; default 0 */
+  const char *trajectory;    /* replay: path of a .ctraj file, UTF-8; default NULL */
+  double replay_from;        /* s, in the trajectory's own time; default -infinity: its first row ... */
+  double replay_to;          /* ... to here; default +infinity: its last row */
+  uint32_t replay_loop;      /* 1: starts again at the end; 0 (default): the last pose stays */
+  uint32_t point_count;      /* path, hand: of `points`, one at least */
+  const crumble_motion_point *points; /* copied. A path goes straight from each to the next at constant speed; where a
+                                         hand wants to be goes with least jerk, at rest in each */
+  double hand_mass;          /* of hand and device, kg; > 0; default 0.1 */
+  double hand_stiffness;     /* of the grip, N/m; >= 0; default 50 */
+  double hand_damping;       /* of both, N s/m; >= 0; default 0.5 */
+  double hand_friction;      /* dry, in the device, N; >= 0; default 0 */
+  double hand_encoder_step;  /* m: positions are told in whole steps of it; 0 (default): as they are */
+  double hand_device_mass;   /* of the device alone, kg, as its info tells; (0, hand_mass]; default 0.075 */
+  double hand_max_force;     /* N, of its motors, which give no more; > 0; default 3.3 */
+  double hand_max_stiffness; /* N/m, as its info tells; 0 (default): it does not */
+  double hand_max_damping;   /* N s/m, likewise; default 0 */
+  uint32_t hand_delay;       /* ticks between a write and its force; [0, 64]; default 0 */
+  uint32_t reserved;         /* keep 0 */
+  const crumble_device_callbacks *callbacks; /* custom: the table, copied; default NULL */
+} crumble_device_def;
+
+/* Defaults. CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+CRUMBLE_API crumble_result crumble_device_def_init(crumble_device_def *def, uint32_t struct_size);
+CRUMBLE_API crumble_result crumble_device_callbacks_init(crumble_device_callbacks *callbacks, uint32_t struct_size);
+/* The kinds that this build opens, as "hand" and so on: number `index`, from 0, and NULL when there are no more. Static
+ * text. [any] */
+CRUMBLE_API const char *crumble_device_kind_name(uint32_t index);
+/* The number of the kind called `name`, for crumble_device_def: so a user chooses by a word. Kinds that this build
+ * cannot open have a number too. CRUMBLE_E_UNSUPPORTED (no such kind; the text lists them). [any] */
+CRUMBLE_API crumble_result crumble_device_kind(const char *name, uint32_t *kind);
+/* Opens a device of any kind. CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE and _BAD_POSE (the text names the field),
+ * _UNINITIALIZED, _VERSION, _UNSUPPORTED (a kind that this build does not have; the text lists those it has), _EMPTY
+ * (no points), _NULL (trajectory, points, callbacks, or one of these that is required), _NO_MEMORY; replay also _IO,
+ * _FORMAT, _CORRUPT, _TOO_LARGE, as the file is. [any] */
+CRUMBLE_API crumble_result crumble_device_open(const crumble_device_def *def, crumble_device *device);
+/* NULL is allowed and does nothing. CRUMBLE_E_IN_USE (a loop has it). [one] */
+CRUMBLE_API crumble_result crumble_device_destroy(crumble_device device);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_device_get_info(crumble_device device, crumble_device_info *info);
+/* The next sample, for programs that do without a loop. Where sample->status is CRUMBLE_READ_NO_NEW_SAMPLE the rest is
+ * as it was. CRUMBLE_E_DEVICE_LOST (for good: open it again), _UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_device_read(crumble_device device, crumble_device_sample *sample);
+/* Force (3), N, and torque (3), N m, or NULL for none, on the hand, until the next write: past all safety stages, which
+ * a loop has. CRUMBLE_E_INVALID_VALUE (not finite), _DEVICE_LOST. [one] */
+CRUMBLE_API crumble_result crumble_device_write(crumble_device device, const double *force, const double *torque);
+
+/* ---- Loops ------------------------------------------------------------------------------------------------------ */
+
+/* The haptic loop: reads devices, moves tools, steps the body, and sends what is fit for a hand. Every sample is looked
+ * at before it is believed, and no force reaches a device but through the safety stages; why a hand gets no force is
+ * told as its fault, which stays until crumble_loop_reset_fault.
+ * While a loop exists, its simulation and devices cannot be destroyed, nor the simulation be set up
+ * (CRUMBLE_E_IN_USE). From crumble_loop_start to crumble_loop_stop they are the loop's own, and so they are in
+ * crumble_loop_tick: every call with them is answered CRUMBLE_E_BUSY. Readers go on; make them before the start. A
+ * recording that runs goes on too, and makes ticks take memory. What is [any] here can be asked while the loop runs. */
+typedef struct crumble_loop_t *crumble_loop;
+
+/* How a tick gets its force from the body. */
+enum {
+  CRUMBLE_COUPLING_DIRECT = 0,      /* the body is stepped in the tick */
+  CRUMBLE_COUPLING_LOCAL_MODEL = 1, /* it is stepped every body_ticks, and its local model answers in between */
+  CRUMBLE_COUPLING_PAPER = 2        /* the same, with the mean of its last five forces, Eq (7), held in between */
+};
+
+/* Who ticks. */
+enum {
+  CRUMBLE_DRIVER_OWN_THREAD = 0, /* crumble_loop_start makes a thread */
+  CRUMBLE_DRIVER_DEVICE = 1,     /* it hands the tick to the first device that is servo-driven */
+  CRUMBLE_DRIVER_HOST = 2        /* whoever calls crumble_loop_tick */
+};
+
+/* Hands of one loop, at most. */
+#define CRUMBLE_MOST_HANDS 4
+
+typedef struct crumble_loop_def {
+  uint32_t struct_size;
+  uint32_t coupling;    /* CRUMBLE_COUPLING_; default direct */
+  double tick;          /* s, of the servo; [0.0001, 0.01]; default 0.001 */
+  uint32_t body_ticks;  /* local model, paper: ticks to a step of the body, [1, 100]; default 1. The simulation's tau
+                           (times its iterations) has to be tick * body_ticks */
+  uint32_t body_thread; /* local model, paper: 1: the body has a thread of its own; 0 (default): every body_ticks-th
+                           tick steps it */
+  uint32_t driver;      /* CRUMBLE_DRIVER_; default own thread */
+  uint32_t watchdog;    /* 1 (default): from start to stop a thread takes the force away when ticks stay out for 20 ms;
+                           not with CRUMBLE_DRIVER_DEVICE, whose own driver does */
+  int32_t priority;     /* of SCHED_FIFO for our thread, [1, 99]; 0: as the system likes; default 80. Where it is not
+                           allowed the loop runs without: crumble_loop_get_scheduling */
+  int32_t processor;    /* for our thread to stay on, [0, 1023]; -1 (default): any */
+  uint32_t lock_memory; /* 1: mlockall, of the whole process; default 0 */
+  uint32_t reserved;    /* keep 0 */
+} crumble_loop_def;
+
+/* One device that moves one tool. In arrays all have the same struct_size. */
+typedef struct crumble_hand_def {
+  uint32_t struct_size;
+  uint32_t tool;             /* that it moves; behind the tools, attachment; default 0 */
+  crumble_device device;     /* must outlive the loop */
+  crumble_pose workspace;    /* the device's origin in the scene and how its axes are turned; default as the scene's */
+  double workspace_mount[4]; /* w, x, y, z: how the tool is turned against the stylus that holds it; default none */
+  double workspace_scale;    /* scene metres per device metre; > 0; default 1 */
+  double force_gain;         /* 1 (default) gives the hand the power that the scene takes; >= 0 */
+  uint32_t clutch_buttons;   /* while any of these is down the tool stays and the hand is free; 0 (default): none */
+  uint32_t coupling;         /* 1 (default): a spring between hand and tool, all that can be felt; 0: none */
+  double coupling_stiffness; /* of it, as felt, N/m; 0 (default): the most that is known to be quiet with this device */
+  uint32_t inject_damping;   /* 1 (default): as much as sampling makes of the stiffness; 0: none */
+  uint32_t controller;       /* 1: brakes when more energy has come out than energy_credit allows; default 0 */
+  double delay;              /* ticks from a sample to its force in the motors, the hold not counted; [0, 64]; 1 */
+  double max_damping;        /* that may be injected, N s/m; 0 (default): the device's, 5 where it tells none */
+  double energy_credit;      /* J; > 0; default 0.02 */
+  /* Safety. A device's own smaller limits come first. */
+  double max_force;        /* N, as felt; > 0; default 3 */
+  double max_torque;       /* N m, as felt; >= 0; default 0.1 */
+  double max_speed;        /* m/s of the device; > 0; default 1. Above it the hand is let go */
+  double max_jump;         /* m between two samples; > 0; default 0.005. A longer one is held back for a tick */
+  double max_slew;         /* N/s: how fast the force may grow; > 0; default 300 */
+  double ramp_time;        /* s in which it comes in after start, clutch and reset; >= 0; default 0.5 */
+  double workspace_margin; /* m outside the device's workspace over which the force goes to 0; > 0; default 0.01 */
+  uint32_t good_samples;   /* in a row before a hand touches anything; default 100 */
+  uint32_t reserved;       /* keep 0 */
+} crumble_hand_def;
+
+/* Why a hand gets no force. */
+enum {
+  CRUMBLE_FAULT_NONE = 0,
+  CRUMBLE_FAULT_NOT_FINITE = 1,  /* the device told, or the body answered, what is not a finite number */
+  CRUMBLE_FAULT_BAD_POSE = 2,    /* the device told an orientation that is no rotation */
+  CRUMBLE_FAULT_SPEED = 3,       /* the device moved faster than max_speed, or went on jumping */
+  CRUMBLE_FAULT_STALLED = 4,     /* the body did not answer for 20 ms, or no tick came for so long */
+  CRUMBLE_FAULT_SILENT = 5,      /* the device told nothing new for 20 ms */
+  CRUMBLE_FAULT_DEVICE_LOST = 6, /* the device says that it is gone */
+  CRUMBLE_FAULT_BODY = 7,        /* the body left the world: crumble_sim_reset */
+  CRUMBLE_FAULT_HALTED = 8       /* crumble_loop_halt */
+};
+
+enum {
+  CRUMBLE_HAND_WAITING = 0, /* no force and no contact: for good_samples, and until the tool is outside the body */
+  CRUMBLE_HAND_RAMPING = 1, /* force comes in */
+  CRUMBLE_HAND_RUNNING = 2,
+  CRUMBLE_HAND_CLUTCHED = 3, /* a clutch button is down */
+  CRUMBLE_HAND_FAULTED = 4   /* no force and no contact until crumble_loop_reset_fault */
+};
+
+/* A loop as its last tick left it. */
+typedef struct crumble_loop_status {
+  uint32_t struct_size;
+  uint32_t running; /* 1: between start and stop */
+  uint64_t ticks;
+  uint64_t steps;         /* of the body */
+  uint64_t missed;        /* deadlines: ticks that never were; simulated time lags by as many */
+  uint64_t late_answers;  /* ticks with an answer older than a step of the body takes */
+  uint64_t watchdog;      /* times that the watchdog took the force away */
+  double time;            /* simulated s */
+  uint32_t hand_count;
+  uint32_t warning_count; /* for crumble_loop_get_warning */
+} crumble_loop_status;
+
+/* One hand as the last tick left it. */
+typedef struct crumble_hand_status {
+  uint32_t struct_size;
+  uint32_t state;           /* CRUMBLE_HAND_ */
+  uint32_t fault;           /* CRUMBLE_FAULT_ */
+  uint32_t finished;        /* 1: the device's motion is over */
+  uint32_t buttons;         /* of the last sample */
+  uint32_t contacts;        /* nodes that the tool holds */
+  int32_t callback_error;   /* as in crumble_device_info */
+  uint32_t reserved;        /* 0 */
+  double ramp;              /* share of the force that is let through, 0 to 1 */
+  double time;              /* s, of the last sample, by the device's clock */
+  crumble_pose device_pose; /* device frame */
+  double velocity[3];       /* m/s, device frame: what damping and guards go by */
+  crumble_pose tool_pose;   /* in the scene; where the body meets it */
+  crumble_wrench body;      /* what the body did to the tool, scene */
+  double force[3];          /* sent, N, device frame */
+  double torque[3];         /* sent, N m, device frame */
+  double stiffness;         /* N/m that the hand feels at most: the coupling's, or the contacts' */
+  double damping;           /* injected now, N s/m */
+  /* Energy between loop and hand, J. */
+  double absorbed;         /* by the loop: the sum of - F . dx of the forces sent */
+  double least_absorbed;   /* ever: negative when more has come out than went in */
+  double injected;         /* of it, taken by injected damping */
+  double controlled;       /* of it, taken by the controller */
+  double credit;           /* that the controller goes by */
+  double required_damping; /* N s/m: the most that was needed at any time, whatever was allowed */
+  /* How often a safety stage had to do something. */
+  uint64_t held;       /* samples: a jump, the pose before it stood for one tick */
+  uint64_t aged;       /* ticks in which the body's answer was old */
+  uint64_t outside;    /* ticks outside the device's workspace */
+  uint64_t clamped;    /* ticks in which the force was more than allowed */
+  uint64_t heated;     /* ticks in which warm motors took force away */
+  uint64_t slewed;     /* ticks in which the force would have grown too fast */
+  uint64_t capped;     /* ticks in which injected damping would have been more than the device bears */
+  uint64_t faults;     /* latched */
+  uint64_t unanswered; /* ticks for which the device had no new sample */
+} crumble_hand_status;
+
+/* Of times, s; all that there were, to within 3 %. This struct never changes its size. */
+typedef struct crumble_percentiles {
+  uint64_t count;
+  double p50;
+  double p99;
+  double p99_9;
+  double max;
+} crumble_percentiles;
+
+typedef struct crumble_loop_times {
+  uint32_t struct_size;
+  uint32_t reserved;             /* 0 */
+  crumble_percentiles tick_wall; /* wall time of a tick */
+  crumble_percentiles tick_cpu;  /* CPU time, where the loop has a thread of its own */
+  crumble_percentiles lateness;  /* from the deadline to the tick's beginning, likewise */
+  crumble_percentiles period;    /* from tick to tick */
+  double rate;                   /* ticks a second, mean since the first */
+} crumble_loop_times;
+
+/* Defaults. CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+CRUMBLE_API crumble_result crumble_loop_def_init(crumble_loop_def *def, uint32_t struct_size);
+CRUMBLE_API crumble_result crumble_hand_def_init(crumble_hand_def *def, uint32_t struct_size);
+/* The choices of the paper: coupling CRUMBLE_COUPLING_PAPER, and for all `hands` (hand_count) no spring, no injected
+ * damping and no controller between body and hand. The safety stages stay. CRUMBLE_E_NULL, _UNINITIALIZED, _VERSION.
+ * [any] */
+CRUMBLE_API crumble_result crumble_loop_apply_paper_preset(crumble_loop_def *def, crumble_hand_def *hands,
+                                                           uint32_t hand_count);
+/* A loop that does not run yet. `def` may be NULL: defaults. `hands`: hand_count, 1 to CRUMBLE_MOST_HANDS.
+ * CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (a field; no such tool; a tick that does not fit the simulation's tau),
+ * _BAD_POSE (workspace), _UNINITIALIZED, _VERSION, _EMPTY (no hands), _TOO_LARGE (too many), _NULL, _BAD_HANDLE,
+ * _STALE_HANDLE or _BUSY (also of a device: the text names the hand), _STATE (two hands with one tool or device;
+ * body_thread with coupling direct), _UNSUPPORTED (no device drives), _NO_MEMORY. [one] in the simulation and the
+ * devices */
+CRUMBLE_API crumble_result crumble_loop_create(crumble_sim sim, const crumble_loop_def *def,
+                                               const crumble_hand_def *hands, uint32_t hand_count, crumble_loop *loop);
+/* Stops it first, and sends zero to every device once more. NULL is allowed and does nothing. CRUMBLE_E_STATE (from
+ * within a device's callback), _BUSY (also of the simulation or a device). [one] */
+CRUMBLE_API crumble_result crumble_loop_destroy(crumble_loop loop);
+/* Begins to tick; hands wait as at the beginning. With CRUMBLE_DRIVER_HOST it begins the watchdog and the body's
+ * thread. CRUMBLE_E_STATE (it runs), _BUSY (also of the simulation or a device), _DEVICE_LOST
+ * (a custom device's `start` failed), _INTERNAL (no thread from the system), _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_loop_start(crumble_loop loop);
+/* Returns when the last tick is over and every device has been sent zero; the simulation can be stepped by hand again.
+ * After ticks without start it sends the zeros too. CRUMBLE_E_STATE (from within a device's callback), _NO_MEMORY (it
+ * is stopped, but a recording found no memory and was dropped). [one] */
+CRUMBLE_API crumble_result crumble_loop_stop(crumble_loop loop);
+/* One tick, with CRUMBLE_DRIVER_HOST, with or without start; a hand that waits, or has no force, is no error. Takes no
+ * memory but while recording. CRUMBLE_E_STATE (another driver; body_thread without start), _BUSY (also of the
+ * simulation or a device), _NO_MEMORY (while recording: it is done, the recording is dropped). [one] */
+CRUMBLE_API crumble_result crumble_loop_tick(crumble_loop loop);
+/* Where tool (or, behind the tools, attachment) `tool` stands, which no hand moves; the scene's origin until then.
+ * CRUMBLE_E_OUT_OF_RANGE (no such tool), _STATE (a hand moves it; the loop runs), _BAD_POSE. [one] */
+CRUMBLE_API crumble_result crumble_loop_place(crumble_loop loop, uint32_t tool, const crumble_pose *pose);
+/* What became of the thread's options, as "SCHED_FIFO 80", or why not; "" where the thread is not ours. `dst` receives
+ * the text and a zero behind it; `dst_bytes` and `needed` as in crumble_sim_copy. CRUMBLE_E_BUFFER_TOO_SMALL. [one] */
+CRUMBLE_API crumble_result crumble_loop_get_scheduling(crumble_loop loop, char *dst, uint64_t dst_bytes,
+                                                       uint64_t *needed);
+
+/* The rest never waits for the loop, nor the loop for it. */
+
+/* Writes 1 between start and stop, else 0. [any] */
+CRUMBLE_API crumble_result crumble_loop_is_running(crumble_loop loop, uint32_t *running);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [any] */
+CRUMBLE_API crumble_result crumble_loop_get_status(crumble_loop loop, crumble_loop_status *status);
+/* CRUMBLE_E_OUT_OF_RANGE (no such hand), _UNINITIALIZED, _VERSION (struct_size). [any] */
+CRUMBLE_API crumble_result crumble_loop_get_hand(crumble_loop loop, uint32_t hand, crumble_hand_status *status);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [any] */
+CRUMBLE_API crumble_result crumble_loop_get_times(crumble_loop loop, crumble_loop_times *times);
+/* What in the definition may be felt as a fault of the loop: damping that the device cannot give, ... Of
+ * crumble_loop_status.warning_count texts the one with number `index`, as crumble_loop_get_scheduling gives its text.
+ * CRUMBLE_E_OUT_OF_RANGE (index), _BUFFER_TOO_SMALL. [any] */
+CRUMBLE_API crumble_result crumble_loop_get_warning(crumble_loop loop, uint32_t index, char *dst, uint64_t dst_bytes,
+                                                    uint64_t *needed);
+/* No force on any hand from the next tick on, until its fault is reset. [any] */
+CRUMBLE_API crumble_result crumble_loop_halt(crumble_loop loop);
+/* A hand that is faulted waits again from the next tick on, and gets its force back by the ramp. Of another: nothing.
+ * CRUMBLE_E_OUT_OF_RANGE (no such hand). [any] */
+CRUMBLE_API crumble_result crumble_loop_reset_fault(crumble_loop loop, uint32_t hand);
+/* "device_lost" and so on, and the same as a sentence for people; "unknown" or a sentence that says so for a number
+ * that is no CRUMBLE_FAULT_. Static text. [any] */
+CRUMBLE_API const char *crumble_fault_name(uint32_t fault);
+CRUMBLE_API const char *crumble_fault_reason(uint32_t fault);
 
 #ifdef __cplusplus
 }

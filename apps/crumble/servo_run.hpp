@@ -1,0 +1,59 @@
+// A scene in a haptic loop on a thread of its own, watched from here while it runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "crumble/haptics/loop.hpp"
+#include "scenes/scene.hpp"
+
+namespace crumble::app {
+
+struct LoopSettings {
+  std::string device = "hand";  // hand, press:MM_PER_S, replay:FILE
+  BodyCoupling coupling = BodyCoupling::direct;
+  std::uint32_t body_ticks = 1;
+  bool body_thread = false;
+  double rate = 1000;             // Hz
+  std::optional<double> seconds;  // of the loop's time; else until the device's motion is over
+  bool virtual_coupling = true, damping = true, controller = false;
+  double encoder_step = 0;  // m, of the hand's device
+  bool record = false;
+};
+
+/// What could be seen after one tick.
+struct LoopSample {
+  double time = 0;                                 // s, by the device's clock
+  Pose device;                                     // device frame, m
+  Vec3 force = Vec3::Zero(), tool = Vec3::Zero();  // sent, N; in the scene, m
+  std::uint32_t contacts = 0;
+  std::uint64_t cuts = 0;  // springs cut so far
+  HandState state = HandState::waiting;
+};
+
+struct LoopRun {
+  std::string scene, device, scheduling;
+  LoopSettings settings;
+  double seconds = 0;  // that were asked for
+  std::vector<std::string> warnings;
+  std::vector<LoopSample> samples;       // about one a millisecond
+  double peak_force = 0;                 // N, of the samples; likewise
+  double stiffness = 0;                  // N/m that the hand felt at most
+  double damping = 0;                    // N s/m injected at most
+  LoopStatus status;                     // after the last tick
+  HandState state = HandState::waiting;  // before it was stopped
+  LoopTimes times;
+  std::uint64_t cuts = 0;
+  std::optional<Trajectory> trajectory;  // with LoopSettings::record
+};
+
+inline constexpr double kMostLoopSeconds = 600;
+
+/// Throws Error naming the option and the value.
+void check(const LoopSettings& settings);
+/// The scene's first tool by the device, whose origin lies where the tool starts; all others stay where they start.
+/// Takes as long as the loop does. Throws Error.
+LoopRun run_loop(Scene scene, const LoopSettings& settings);
+
+}  // namespace crumble::app

@@ -1,0 +1,232 @@
+// Devices through C, against the same through C++.
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "capi/loop_rig.hpp"
+#include "crumble/device/open.hpp"
+
+namespace crumble {
+namespace {
+
+class Devices : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_OK(crumble_device_def_init(&def, sizeof def));
+    def.start = {{0.01, 0.02, 0.03}, {0.8, 0, 0.6, 0}};
+  }
+  void TearDown() override { EXPECT_RESULT(CRUMBLE_OK, crumble_device_destroy(device)); }
+  void open() { ASSERT_OK(crumble_device_open(&def, &device)); }
+  crumble_device_sample read() {
+    crumble_device_sample sample{};
+    sample.struct_size = sizeof sample;
+    EXPECT_RESULT(CRUMBLE_OK, crumble_device_read(device, &sample));
+    return sample;
+  }
+  crumble_device_info info() {
+    crumble_device_info out{};
+    out.struct_size = sizeof out;
+    EXPECT_RESULT(CRUMBLE_OK, crumble_device_get_info(device, &out));
+    return out;
+  }
+  /// The same bits for `ticks` reads, each followed by a push.
+  void expect_like(const DeviceDef& as, int ticks) {
+    open();
+    const std::unique_ptr<Device> other = open_device(as);
+    EXPECT_EQ(info().name, other->info().name);
+    EXPECT_EQ(info().kind, static_cast<std::uint32_t>(as.kind));
+    EXPECT_EQ(info().flags, std::uint32_t{CRUMBLE_DEVICE_STEP_LOCKED});
+    for (int k = 0; k < ticks; ++k) {
+      DeviceSample expected;
+      const ReadStatus status = other->read(expected);
+      const crumble_device_sample got = read();
+      ASSERT_EQ(got.status, static_cast<std::uint32_t>(status)) << k;
+      ASSERT_EQ(got.time, expected.time);
+      ASSERT_EQ(got.sequence, expected.sequence);
+      ASSERT_EQ(got.flags, expected.flags);
+      for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(got.pose.position[axis], expected.pose.position[axis]) << k;
+        ASSERT_EQ(got.linear_velocity[axis], expected.linear_velocity[axis]) << k;
+      }
+      ASSERT_EQ(got.pose.orientation[2], expected.pose.orientation.y());
+      const double force[3] = {0.1, 0.5, 0}, torque[3] = {0, 0, 0.01};
+      ASSERT_OK(crumble_device_write(device, force, torque));
+      other->write({0.1, 0.5, 0}, {0, 0, 0.01});
+    }
+  }
+  void expect_bad(crumble_result expected, const std::vector<std::string>& words) {
+    crumble_device made = nullptr;
+    expect_failure(expected, crumble_device_open(&def, &made), words);
+    EXPECT_EQ(made, nullptr);
+    ASSERT_OK(crumble_device_def_init(&def, sizeof def));
+  }
+  const Pose kStart{{0.01, 0.02, 0.03}, Quat(0.8, 0, 0.6, 0)};
+  const std::string kTrajectory = std::string(CRUMBLE_SOURCE_DIR) + "/examples/trajectories/press_1mm_s.ctraj";
+  crumble_device_def def{};
+  crumble_device device = nullptr;
+};
+
+TEST_F(Devices, Null) {
+  expect_like({.kind = DeviceKind::null, .rest = kStart}, 5);
+}
+
+TEST_F(Devices, Press) {
+  def.kind = CRUMBLE_DEVICE_PRESS;
+  def.tick = 2e-3;
+  def.press_direction[0] = 1;
+  def.press_speed = 0.1, def.press_depth = 0.01, def.press_hold = 0.02;
+  expect_like({.kind = DeviceKind::press, .tick = 2e-3, .press = {kStart, {1, -1, 0}, 0.1, 0.01, 0.02}}, 100);
+}
+
+TEST_F(Devices, Path) {
+  const crumble_motion_point points[] = {{0.01, {0, 0.1, 0}, {0, 0, 1}}, {0.03, {0.1, 0.1, 0}, {0, 2, 1}}};
+  def.kind = CRUMBLE_DEVICE_PATH;
+  def.points = points, def.point_count = 2;
+  const PathOptions path{kStart, {{0.01, {0, 0.1, 0}, {0, 0, 1}}, {0.03, {0.1, 0.1, 0}, {0, 2, 1}}}};
+  expect_like({.kind = DeviceKind::path, .path = path}, 40);
+}
+
+TEST_F(Devices, HandFeelsWhatIsWritten) {
+  const crumble_motion_point points[] = {{0.05, {0, -0.01, 0}, {}}};
+  def.kind = CRUMBLE_DEVICE_HAND;
+  def.points = points, def.point_count = 1;
+  def.hand_mass = 0.2, def.hand_stiffness = 80, def.hand_damping = 1, def.hand_friction = 0.01;
+  def.hand_encoder_step = 1e-5, def.hand_delay = 2, def.hand_device_mass = 0.06;
+  def.hand_max_force = 2, def.hand_max_stiffness = 900, def.hand_max_damping = 4;
+  const HandOptions hand{kStart, {{0.05, {0, -0.01, 0}}}, 0.2, 80, 1, 0.01, 1e-5, 2, 0.06, 2, 900, 4};
+  expect_like({.kind = DeviceKind::hand, .hand = hand}, 80);
+  EXPECT_EQ(info().mass, 0.06);
+  EXPECT_EQ(info().max_force, 2);
+  EXPECT_EQ(info().max_stiffness, 900);
+  EXPECT_EQ(info().max_damping, 4);
+  EXPECT_EQ(info().position_step, 1e-5);
+  EXPECT_GT(read().pose.position[0], 0.0101) << "pushed aside";
+}
+
+TEST_F(Devices, Replay) {
+  def.kind = CRUMBLE_DEVICE_REPLAY;
+  def.trajectory = kTrajectory.c_str();
+  expect_like({.kind = DeviceKind::replay, .trajectory = kTrajectory}, 50);
+}
+
+TEST_F(Devices, ReplayOfAPartAgainAndAgain) {
+  def.kind = CRUMBLE_DEVICE_REPLAY;
+  def.trajectory = kTrajectory.c_str();
+  def.replay_from = 0.1, def.replay_to = 0.13, def.replay_loop = 1;
+  expect_like({.kind = DeviceKind::replay, .replay = {0.1, 0.13, EndPolicy::loop}, .trajectory = kTrajectory}, 100);
+}
+
+TEST_F(Devices, KindsGoByName) {
+  std::vector<std::string> names;
+  while (const char* name = crumble_device_kind_name(static_cast<std::uint32_t>(names.size()))) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "path", "hand", "custom"}));
+  EXPECT_EQ(crumble_device_kind_name(~0u), nullptr);
+  std::uint32_t kind = 99;
+  ASSERT_OK(crumble_device_kind("hand", &kind));
+  EXPECT_EQ(kind, std::uint32_t{CRUMBLE_DEVICE_HAND});
+  ASSERT_OK(crumble_device_kind("phantom", &kind));
+  EXPECT_EQ(kind, std::uint32_t{CRUMBLE_DEVICE_PHANTOM});
+  expect_failure(CRUMBLE_E_UNSUPPORTED, crumble_device_kind("Hand", &kind), {"'Hand'", "press", "hand"});
+  EXPECT_EQ(kind, std::uint32_t{CRUMBLE_DEVICE_PHANTOM});
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_kind(nullptr, &kind));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_kind("hand", nullptr));
+  def.kind = CRUMBLE_DEVICE_PHANTOM;
+  expect_bad(CRUMBLE_E_UNSUPPORTED, {"crumble_device_open", "phantom", "null, press, replay, path, hand"});
+}
+
+TEST_F(Devices, BadFieldsAreNamed) {
+  const crumble_motion_point good[] = {{0.1, {0, 0, 0}, {}}};
+  const crumble_motion_point backward[] = {{0.1, {0, 0, 0}, {}}, {0.1, {0, 0, 0}, {}}};
+  def.kind = 7, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"kind", "7"});
+  def.reserved = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"reserved"});
+  def.replay_loop = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_loop", "2"});
+  def.tick = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"tick", "0"});
+  def.tick = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"tick"});
+  def.start.orientation[0] = 0, expect_bad(CRUMBLE_E_BAD_POSE, {"pose"});
+  const auto press = [&] { def.kind = CRUMBLE_DEVICE_PRESS; };
+  press(), def.press_speed = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.speed"});
+  press(), def.press_depth = kInfinity, expect_bad(CRUMBLE_E_INVALID_VALUE, {"press.depth"});
+  press(), def.press_direction[1] = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.direction"});
+  press(), def.press_hold = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.hold"});
+  def.kind = CRUMBLE_DEVICE_PATH, expect_bad(CRUMBLE_E_EMPTY, {"points"});
+  def.kind = CRUMBLE_DEVICE_PATH, def.point_count = 1, expect_bad(CRUMBLE_E_NULL, {"points"});
+  def.kind = CRUMBLE_DEVICE_PATH, def.points = backward, def.point_count = 2;
+  expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"points[1].time"});
+  const auto hand = [&] { def.kind = CRUMBLE_DEVICE_HAND, def.points = good, def.point_count = 1; };
+  hand(), def.hand_mass = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.mass"});
+  hand(), def.hand_device_mass = 0.2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.device_mass"});
+  hand(), def.hand_delay = 65, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.delay"});
+  hand(), def.hand_max_force = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"hand.max_force"});
+}
+
+TEST_F(Devices, BadTrajectoriesAreNamed) {
+  const auto replay = [&](const char* path) { def.kind = CRUMBLE_DEVICE_REPLAY, def.trajectory = path; };
+  replay(nullptr), expect_bad(CRUMBLE_E_NULL, {"trajectory"});
+  replay("/nowhere/there.ctraj"), expect_bad(CRUMBLE_E_IO, {"/nowhere/there.ctraj"});
+  const std::string text = std::string(CRUMBLE_SOURCE_DIR) + "/README.md";
+  replay(text.c_str()), expect_bad(CRUMBLE_E_FORMAT, {"README.md"});
+  replay(kTrajectory.c_str()), def.replay_from = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay.from"});
+  replay(kTrajectory.c_str()), def.replay_from = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"replay.from"});
+  replay(kTrajectory.c_str()), def.replay_to = 1e9, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay.to"});
+}
+
+TEST_F(Devices, MisuseIsAnswered) {
+  crumble_device_sample sample{};
+  sample.struct_size = sizeof sample;
+  crumble_device_info about{};
+  const double force[3] = {0, 0, 0}, bad[3] = {0, kNan, 0};
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_open(nullptr, &device));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_open(&def, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_read(nullptr, &sample));
+  expect_failure(CRUMBLE_E_BAD_HANDLE, crumble_device_read(reinterpret_cast<crumble_device>(&sample), &sample),
+                 {"crumble_device_read", "device"});
+  open();
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_read(device, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_write(device, nullptr, force));
+  EXPECT_RESULT(CRUMBLE_OK, crumble_device_write(device, force, nullptr));
+  expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_device_write(device, bad, force), {"force.y"});
+  expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_device_write(device, force, bad), {"torque.y"});
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_device_get_info(device, &about));
+  sample.struct_size = 0;
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_device_read(device, &sample));
+  sample.struct_size = sizeof sample;
+  EXPECT_EQ(read().sequence, 0u) << "calls that fail read nothing";
+  const crumble_device gone = device;
+  ASSERT_OK(crumble_device_destroy(device));
+  device = nullptr;
+  EXPECT_RESULT(CRUMBLE_E_STALE_HANDLE, crumble_device_read(gone, &sample));
+  EXPECT_RESULT(CRUMBLE_E_STALE_HANDLE, crumble_device_destroy(gone));
+  EXPECT_RESULT(CRUMBLE_OK, crumble_device_destroy(nullptr));
+}
+
+TEST_F(Devices, OlderAndNewerPrograms) {
+  crumble_device_def older;
+  std::memset(&older, 0xff, sizeof older);
+  ASSERT_OK(crumble_device_def_init(&older, offsetof(crumble_device_def, press_speed)));
+  older.kind = CRUMBLE_DEVICE_PRESS;
+  ASSERT_OK(crumble_device_open(&older, &device));
+  crumble_device_sample small;
+  std::memset(&small, 0xee, sizeof small);
+  small.struct_size = offsetof(crumble_device_sample, time);
+  ASSERT_OK(crumble_device_read(device, &small));
+  ASSERT_OK(crumble_device_read(device, &small));
+  EXPECT_EQ(small.sequence, 1u);
+  EXPECT_EQ(reinterpret_cast<unsigned char*>(&small)[offsetof(crumble_device_sample, time)], 0xee);
+  EXPECT_EQ(read().linear_velocity[1], -1e-3) << "the default speed";
+
+  struct {
+    crumble_device_def def;
+    double more;
+  } newer;
+  ASSERT_OK(crumble_device_def_init(&newer.def, sizeof newer));
+  newer.more = 1;
+  crumble_device made = nullptr;
+  expect_failure(CRUMBLE_E_VERSION, crumble_device_open(&newer.def, &made), {"does not have"});
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_device_def_init(&def, 0));
+  EXPECT_RESULT(CRUMBLE_E_VERSION, crumble_device_def_init(&def, 7));
+  crumble_device_callbacks table{};
+  EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_device_callbacks_init(&table, 0));
+}
+
+}  // namespace
+}  // namespace crumble
