@@ -127,6 +127,11 @@ TimePercentiles percentiles(const Histogram& h) {
   return {h.count(), h.quantile(0.5), h.quantile(0.99), h.quantile(0.999), h.greatest()};
 }
 
+// Above the loop's own: a step that never ends must not keep the watchdog from its processor.
+int watchdog_priority(const ThreadOptions& loop) {
+  return loop.priority > 0 ? std::min(loop.priority + 1, 99) : 0;
+}
+
 bool tick_again(void* loop) noexcept {
   static_cast<HapticLoop*>(loop)->tick();
   return true;
@@ -207,7 +212,7 @@ void HapticLoop::start() {
     s.body->start();
     if (s.def.watchdog && !s.driving) {
       s.watchdog.start(
-          kWatchPeriod, {.priority = 0},
+          kWatchPeriod, {.priority = watchdog_priority(s.def.thread)},
           [](void* state) noexcept {
             static_cast<State*>(state)->watch();
             return true;

@@ -6,9 +6,9 @@
 // loses little (docs/haptics.md). The tool has no mass: it goes where spring and body balance, by one step of
 // Newton's method a tick,
 //     (Kc + n K) dx = Kc (x_device - x) + F_body(x),    K = - dF_body/dx with neighbours held,
-// damped by n, the ticks over which F_body is a mean: K answers at once, a mean n times later. Contacts that slide count
-// in K as if they stuck: a sliding one has no stiffness along the surface, so that the tool would run away from its
-// friction by all of friction / Kc in one tick, the friction turn round, and the tool come back in the next.
+// damped by n, the ticks over which F_body is a mean: K answers at once, a mean n times later. Contacts that slide
+// count in K as if they stuck: a sliding one has no stiffness along the surface, so that the tool would run away from
+// its friction by all of friction / Kc in one tick, the friction turn round, and the tool come back in the next.
 // Translations only; the tool turns with the device.
 //
 // After Colgate, Stanley and Brown (IROS 1995). Their coupling has a damper beside the spring; here it would work

@@ -29,8 +29,8 @@ class Recording {
   std::size_t tool_count() const { return tool_count_; }
   std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
   std::uint64_t state_hash(std::size_t step) const { return hashes_[step]; }
-  /// Does to `sim` what the host did to fragments, node forces and tools before the step. Throws Error(corrupt) when that
-  /// cannot be done.
+  /// Does to `sim` what the host did to fragments, node forces and tools before the step. Throws Error(corrupt) when
+  /// that cannot be done.
   void apply_changes(std::size_t step, Simulation& sim) const;
   /// A simulation at the recording's start. Of `how` only what changes no bit counts: audit, kernel, threads.
   Simulation start(const StepSettings& how = {}) const;
