@@ -94,7 +94,7 @@ Device* driving_device(const LoopDef& def) {
 }
 
 // What a spring that one knows beforehand will ask for.
-std::vector<std::string> find_warnings(const Simulation& sim, const LoopDef& def) {
+std::vector<std::string> find_warnings(const LoopDef& def) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < def.hands.size(); ++i) {
     const HandDef& hand = def.hands[i];
@@ -115,7 +115,6 @@ std::vector<std::string> find_warnings(const Simulation& sim, const LoopDef& def
                          " N s/m of damping, " + to_text(limit) + " are to be had: the loop may ring");
     }
   }
-  static_cast<void>(sim);
   return warnings;
 }
 
@@ -149,7 +148,7 @@ void apply_paper_preset(LoopDef& def) {
 
 HapticLoop::State::State(Simulation& simulation, LoopDef definition)
     : def((check_times(simulation, definition), check_hands(simulation, definition), std::move(definition))),
-      warnings(find_warnings(simulation, def)),
+      warnings(find_warnings(def)),
       sim(simulation),
       stepper(simulation, holders_of(def)),
       body(is_direct(def) ? haptics::make_direct_link(stepper) : haptics::make_model_link(stepper, def)),
