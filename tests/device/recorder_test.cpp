@@ -95,6 +95,51 @@ TEST(Recorder, KeepsOnlyNewSamplesInOrder) {
   EXPECT_EQ(kept.rows[1].force.x(), 5);
 }
 
+/// Runs its ticks in start_servo, three at most.
+class ServoDriven final : public Device {
+ public:
+  ServoDriven() { info_.servo_driven = true; }
+  const DeviceInfo& info() const noexcept override { return info_; }
+  ReadStatus read(DeviceSample& sample) noexcept override {
+    if (running && reads == 3) return ReadStatus::lost;
+    sample = {};
+    sample.time = static_cast<double>(reads++);
+    return ReadStatus::ok;
+  }
+  void write(const Vec3&, const Vec3&) noexcept override {}
+  void start_servo(const ServoTick& tick) override {
+    running = true;
+    while (tick.call(tick.context)) {
+    }
+  }
+  void stop_servo() noexcept override { running = false; }
+  const char* error_text() const noexcept override { return "unplugged"; }
+
+  bool running = false;
+  int reads = 0;
+
+ private:
+  DeviceInfo info_;
+};
+
+TEST(Recorder, RunsTheThreadOfItsDevice) {
+  auto device = std::make_unique<ServoDriven>();
+  ServoDriven& inner = *device;
+  Recorder recorder(std::move(device), 100);
+  ASSERT_TRUE(recorder.info().servo_driven);
+  recorder.start_servo({.call =
+                            [](void* context) noexcept {
+                              DeviceSample sample;
+                              return static_cast<Recorder*>(context)->read(sample) == ReadStatus::ok;
+                            },
+                        .context = &recorder});
+  EXPECT_EQ(recorder.size(), 3u);
+  EXPECT_TRUE(inner.running);
+  recorder.stop_servo();
+  EXPECT_FALSE(inner.running);
+  EXPECT_STREQ(recorder.error_text(), "unplugged");
+}
+
 TEST(Recorder, RefusesBadCapacityAndNoDevice) {
   const auto open = [](std::size_t capacity) {
     return error_of([=] { Recorder(open_null({}, 1e-3), capacity); }).code();

@@ -20,6 +20,9 @@ class Recorder final : public Device {
   const DeviceInfo& info() const noexcept override { return device_->info(); }
   [[nodiscard]] ReadStatus read(DeviceSample& sample) noexcept override;
   void write(const Vec3& force, const Vec3& torque) noexcept override;
+  void start_servo(const ServoTick& tick) override { device_->start_servo(tick); }
+  void stop_servo() noexcept override { device_->stop_servo(); }
+  const char* error_text() const noexcept override { return device_->error_text(); }
 
   std::size_t size() const noexcept { return size_; }
   std::size_t dropped() const noexcept { return dropped_; }
