@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "crumble/base/text.hpp"
 #include "device/check.hpp"
+#include "device/minimum_jerk.hpp"
 
 namespace crumble {
 namespace {
@@ -14,16 +14,9 @@ constexpr int kSubsteps = 64;
 constexpr std::uint64_t kSlots = HandOptions::kMaxDelay + 1;
 
 void require_points(const std::vector<HandPoint>& points) {
-  if (points.empty()) throw Error(Code::empty, "hand.points is empty");
+  device::require_times("hand.points", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::string name = "hand.points[" + std::to_string(i) + "]";
-    require_finite(name + ".time", points[i].time);
-    device::require_vector(name + ".move", points[i].move);
-    const double before = i > 0 ? points[i - 1].time : 0;
-    if (i > 0 ? points[i].time <= before : points[i].time < 0) {
-      throw Error(Code::out_of_range, name + ".time must be " + (i > 0 ? "above that before, " : "at least ") +
-                                          to_text(before) + ", is " + to_text(points[i].time));
-    }
+    device::require_vector("hand.points[" + std::to_string(i) + "].move", points[i].move);
   }
 }
 
@@ -39,20 +32,19 @@ void require_stable(const HandOptions& options, double tick) {
 }
 
 HandOptions checked(const HandOptions& options, double tick) {
-  constexpr double kMost = std::numeric_limits<double>::max();
   device::require_pose("hand.start", options.start);
   require_points(options.points);
   require_positive("hand.mass", options.mass);
-  require_in_range("hand.stiffness", options.stiffness, 0, kMost);
-  require_in_range("hand.damping", options.damping, 0, kMost);
-  require_in_range("hand.friction", options.friction, 0, kMost);
-  require_in_range("hand.encoder_step", options.encoder_step, 0, kMost);
+  device::require_not_negative("hand.stiffness", options.stiffness);
+  device::require_not_negative("hand.damping", options.damping);
+  device::require_not_negative("hand.friction", options.friction);
+  device::require_not_negative("hand.encoder_step", options.encoder_step);
   require_in_range("hand.delay", options.delay, 0, HandOptions::kMaxDelay);
   require_positive("hand.device_mass", options.device_mass);
   require_in_range("hand.device_mass", options.device_mass, 0, options.mass);
   require_positive("hand.max_force", options.max_force);
-  require_in_range("hand.max_stiffness", options.max_stiffness, 0, kMost);
-  require_in_range("hand.max_damping", options.max_damping, 0, kMost);
+  device::require_not_negative("hand.max_stiffness", options.max_stiffness);
+  device::require_not_negative("hand.max_damping", options.max_damping);
   require_positive("tick", tick);
   require_stable(options, tick);
   return options;
@@ -96,8 +88,7 @@ SimulatedHand::SimulatedHand(const HandOptions& options, double tick) : options_
 ReadStatus SimulatedHand::read(DeviceSample& sample) noexcept {
   if (count_ > 0) advance();
   const double time = static_cast<double>(count_) * tick_;
-  // A millionth of a tick of slack, as for a press.
-  const bool finished = time > options_.points.back().time + 1e-6 * tick_;
+  const bool finished = device::is_over(time, options_.points.back().time, tick_);
   sample = {.time = time, .pose = {position_, options_.start.orientation}, .sequence = count_};
   if (const double step = options_.encoder_step; step > 0) {
     for (double& x : sample.pose.position) x = std::round(x / step) * step;
@@ -121,8 +112,7 @@ Vec3 SimulatedHand::wanted(double time) const noexcept {
   const HandPoint& a = *(next - 1);
   if (next == points.end()) return options_.start.position + a.move;
   const double s = (time - a.time) / (next->time - a.time);
-  const double share = s * s * s * (10 + s * (6 * s - 15));
-  return options_.start.position + (a.move + share * (next->move - a.move));
+  return options_.start.position + (a.move + device::minimum_jerk(s) * (next->move - a.move));
 }
 
 // Through tick count_ - 1. Semi-implicit Euler, velocity first.

@@ -1,30 +1,13 @@
 #include <algorithm>
-#include <cmath>
 
-#include "crumble/base/text.hpp"
-#include "crumble/base/transcendental.hpp"
 #include "crumble/device/scripted.hpp"
 #include "device/check.hpp"
+#include "device/turn.hpp"
 
 namespace crumble {
 namespace {
 
 constexpr double kMostTurn = 1e4;  // rad: what sin_exact takes
-
-Quat turned_by(const Vec3& turn) {
-  const double angle = norm(turn);
-  return angle > 0 ? axis_angle(turn / angle, angle) : Quat::Identity();
-}
-
-// Angular velocity of exp(r) while r changes by `rate` a second.
-Vec3 turning(const Vec3& r, const Vec3& rate) {
-  const double angle = norm(r);
-  const bool small = angle < 1e-3;  // series: the closed forms lose their digits
-  const double a = small ? 0.5 : (1 - cos_exact(angle)) / (angle * angle);
-  const double b = small ? 1.0 / 6 : (angle - sin_exact(angle)) / (angle * angle * angle);
-  const Vec3 across = cross(r, rate);
-  return rate + a * across + b * cross(r, across);
-}
 
 class PathDevice final : public Device {
  public:
@@ -40,8 +23,7 @@ class PathDevice final : public Device {
   const DeviceInfo& info() const noexcept override { return info_; }
   ReadStatus read(DeviceSample& sample) noexcept override {
     const double time = static_cast<double>(count_) * tick_;
-    // A millionth of a tick of slack, as for a press.
-    const bool finished = time > points_.back().time + 1e-6 * tick_;
+    const bool finished = device::is_over(time, points_.back().time, tick_);
     sample = at(time);
     sample.sequence = count_;
     if (finished) sample.flags = sample_flag::kFinished;
@@ -63,9 +45,9 @@ class PathDevice final : public Device {
     DeviceSample sample;
     sample.time = time;
     sample.pose.position = start_.position + (a.move + share * (b.move - a.move));
-    sample.pose.orientation = multiply(turned_by(turn), start_.orientation);
+    sample.pose.orientation = multiply(device::turned_by(turn), start_.orientation);
     sample.linear_velocity = (b.move - a.move) / length;
-    sample.angular_velocity = turning(turn, turn_rate);
+    sample.angular_velocity = device::turning(turn, turn_rate);
     return sample;
   }
 
@@ -80,19 +62,13 @@ class PathDevice final : public Device {
 
 std::unique_ptr<Device> open_path(const PathOptions& options, double tick) {
   device::require_pose("path.start", options.start);
-  if (options.points.empty()) throw Error(Code::empty, "path.points is empty");
+  device::require_times("path.points", options.points);
   for (std::size_t i = 0; i < options.points.size(); ++i) {
     const PathPoint& point = options.points[i];
     const std::string name = "path.points[" + std::to_string(i) + "]";
-    require_finite(name + ".time", point.time);
     device::require_vector(name + ".move", point.move);
     device::require_vector(name + ".turn", point.turn);
     require_in_range("|" + name + ".turn|", norm(point.turn), 0, kMostTurn);
-    const double before = i > 0 ? options.points[i - 1].time : 0;
-    if (i > 0 ? point.time <= before : point.time < 0) {
-      throw Error(Code::out_of_range, name + ".time must be " + (i > 0 ? "above that before, " : "at least ") +
-                                          to_text(before) + ", is " + to_text(point.time));
-    }
   }
   require_positive("tick", tick);
   return std::make_unique<PathDevice>(options, tick);

@@ -41,8 +41,7 @@ class PressDevice final : public Device {
     const double time = static_cast<double>(count_) * tick_;
     const double travel = speed_ * time;
     const bool moving = travel < depth_;
-    // A millionth of a tick of slack: whether the tick that ends the press still belongs to it is not left to rounding.
-    const bool finished = time > end_ + 1e-6 * tick_;
+    const bool finished = device::is_over(time, end_, tick_);
     sample = {.time = time, .pose = start_, .sequence = count_};
     sample.pose.position += (moving ? travel : depth_) * direction_;
     if (moving) sample.linear_velocity = speed_ * direction_;
@@ -74,8 +73,7 @@ std::unique_ptr<Device> open_press(const PressOptions& options, double tick) {
   require_positive("|press.direction|", norm(options.direction));
   require_positive("press.speed", options.speed);
   require_positive("press.depth", options.depth);
-  require_finite("press.hold", options.hold);
-  if (options.hold < 0) require_positive("press.hold", options.hold);
+  device::require_not_negative("press.hold", options.hold);
   require_positive("tick", tick);
   return std::make_unique<PressDevice>(options, tick);
 }

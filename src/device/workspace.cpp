@@ -1,7 +1,5 @@
 #include "crumble/device/workspace.hpp"
 
-#include <limits>
-
 #include "device/check.hpp"
 
 namespace crumble {
@@ -10,7 +8,7 @@ Workspace::Workspace(const WorkspaceOptions& options)
     : pose_(options.pose), scale_(options.scale), force_gain_(options.force_gain), mount_(options.mount) {
   device::require_pose("workspace.pose", options.pose);
   require_positive("workspace.scale", options.scale);
-  require_in_range("workspace.force_gain", options.force_gain, 0, std::numeric_limits<double>::max());
+  device::require_not_negative("workspace.force_gain", options.force_gain);
   device::require_pose("workspace.mount", {Vec3::Zero(), options.mount});
   mount_ = renormalized({Vec3::Zero(), options.mount}).orientation;
   pose_ = renormalized(options.pose);
