@@ -116,6 +116,10 @@ DeviceDef to_device_def(const crumble_device_def& def) {
       break;
     case DeviceKind::phantom:
     case DeviceKind::custom:
+    case DeviceKind::poke:
+    case DeviceKind::tremor:
+    case DeviceKind::wander:
+    case DeviceKind::inverse3:
       break;
   }
   return out;

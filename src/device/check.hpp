@@ -27,6 +27,11 @@ inline void require_not_negative(std::string_view field, double value) {
   require_in_range(field, value, 0, std::numeric_limits<double>::max());
 }
 
+/// What PoseCurve takes too; keeps a script's numbers finite.
+inline void require_speed(std::string_view field, double value) {
+  require_in_range(field, value, 0, 1e6);
+}
+
 /// Points of a way are reached one after the other, the first at 0 or later. `list` is the name of `points`.
 template <class Points>
 void require_times(const std::string& list, const Points& points) {

@@ -7,11 +7,12 @@
 namespace crumble {
 namespace {
 
-constexpr std::array kAllKinds = {DeviceKind::null,   DeviceKind::press, DeviceKind::replay, DeviceKind::phantom,
-                                  DeviceKind::custom, DeviceKind::path,  DeviceKind::hand};
+constexpr std::array kAllKinds = {DeviceKind::null,   DeviceKind::press,  DeviceKind::replay,  DeviceKind::phantom,
+                                  DeviceKind::custom, DeviceKind::path,   DeviceKind::hand,    DeviceKind::poke,
+                                  DeviceKind::tremor, DeviceKind::wander, DeviceKind::inverse3};
 // A custom device is handed over as an object; there is nothing to open.
 constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::path,
-                                   DeviceKind::hand};
+                                   DeviceKind::hand, DeviceKind::poke,  DeviceKind::tremor, DeviceKind::wander};
 
 std::string list(std::span<const DeviceKind> kinds) {
   std::string text;
@@ -41,6 +42,14 @@ const char* to_string(DeviceKind kind) {
       return "path";
     case DeviceKind::hand:
       return "hand";
+    case DeviceKind::poke:
+      return "poke";
+    case DeviceKind::tremor:
+      return "tremor";
+    case DeviceKind::wander:
+      return "wander";
+    case DeviceKind::inverse3:
+      return "inverse3";
   }
   return "unknown";
 }
@@ -62,10 +71,17 @@ std::unique_ptr<Device> open_device(const DeviceDef& def) {
       return open_path(def.path, def.tick);
     case DeviceKind::hand:
       return open_hand(def.hand, def.tick);
+    case DeviceKind::poke:
+      return open_poke(def.poke, def.tick);
+    case DeviceKind::tremor:
+      return open_tremor(def.tremor, def.tick);
+    case DeviceKind::wander:
+      return open_wander(def.wander, def.tick);
     case DeviceKind::replay:
       return open_replay(read_trajectory(def.trajectory), def.replay, def.tick);
     case DeviceKind::phantom:
     case DeviceKind::custom:
+    case DeviceKind::inverse3:
       break;
   }
   throw Error(Code::unsupported, "device kind " + std::string(to_string(def.kind)) +

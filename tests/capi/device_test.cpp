@@ -119,7 +119,8 @@ TEST_F(Devices, ReplayOfAPartAgainAndAgain) {
 TEST_F(Devices, KindsGoByName) {
   std::vector<std::string> names;
   while (const char* name = crumble_device_kind_name(static_cast<std::uint32_t>(names.size()))) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "path", "hand", "custom"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "path", "hand", "poke", "tremor", "wander",
+                                             "custom"}));
   EXPECT_EQ(crumble_device_kind_name(~0u), nullptr);
   std::uint32_t kind = 99;
   ASSERT_OK(crumble_device_kind("hand", &kind));

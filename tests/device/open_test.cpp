@@ -29,22 +29,25 @@ TEST(Open, OpensEveryKindThatItLists) {
 }
 
 TEST(Open, RefusesTheRestWithTheListOfWhatThereIs) {
-  for (const DeviceKind kind : {DeviceKind::phantom, DeviceKind::custom, static_cast<DeviceKind>(77)}) {
+  for (const DeviceKind kind :
+       {DeviceKind::phantom, DeviceKind::custom, DeviceKind::inverse3, static_cast<DeviceKind>(77)}) {
     const Error error = error_of([&] { open_device({.kind = kind}); });
     EXPECT_EQ(error.code(), Code::unsupported);
     EXPECT_TRUE(mentions(error, to_string(kind))) << error.what();
-    EXPECT_TRUE(mentions(error, "null, press, replay, path, hand")) << error.what();
+    EXPECT_TRUE(mentions(error, "null, press, replay, path, hand, poke, tremor, wander")) << error.what();
   }
   EXPECT_EQ(error_of([] { open_device({.kind = DeviceKind::replay, .trajectory = "none.ctraj"}); }).code(), Code::io);
 }
 
 TEST(Open, NamesComeBack) {
-  for (const char* name : {"null", "press", "replay", "phantom", "custom", "path", "hand"})
+  for (const char* name :
+       {"null", "press", "replay", "phantom", "custom", "path", "hand", "poke", "tremor", "wander", "inverse3"})
     EXPECT_STREQ(to_string(device_kind(name)), name);
   const Error error = error_of([] { device_kind("mouse"); });
   EXPECT_EQ(error.code(), Code::unsupported);
   EXPECT_TRUE(mentions(error, "mouse"));
-  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom, path, hand")) << error.what();
+  EXPECT_TRUE(mentions(error, "null, press, replay, phantom, custom, path, hand, poke, tremor, wander, inverse3"))
+      << error.what();
 }
 
 }  // namespace

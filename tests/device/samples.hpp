@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/random.hpp"
@@ -34,6 +35,22 @@ inline std::array<std::uint64_t, 16> bits(const DeviceSample& s) {
           b(s.angular_velocity.z()),
           s.buttons,
           s.flags};
+}
+
+/// The next `n` samples, whatever their status.
+inline std::vector<DeviceSample> read_some(Device& device, std::size_t n) {
+  std::vector<DeviceSample> samples(n);
+  for (DeviceSample& sample : samples) static_cast<void>(device.read(sample));
+  return samples;
+}
+
+/// By the difference of its neighbours: what samples k - 1, k, k + 1 say of the velocities at k.
+inline Vec3 differenced_velocity(const DeviceSample* at) {
+  return (at[1].pose.position - at[-1].pose.position) / (at[1].time - at[-1].time);
+}
+inline Vec3 differenced_turning(const DeviceSample* at) {
+  const Quat turned = multiply(at[1].pose.orientation, at[-1].pose.orientation.conjugate());
+  return Vec3(turned.x(), turned.y(), turned.z()) * (2 / turned.w() / (at[1].time - at[-1].time));
 }
 
 /// Runs `action` and returns its Error; a code of Code{} when it throws none.

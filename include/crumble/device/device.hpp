@@ -15,13 +15,17 @@
 namespace crumble {
 
 enum class DeviceKind : std::uint8_t {
-  null = 0,     // a pose that never moves
-  press = 1,    // a scripted straight press
-  replay = 2,   // a trajectory from a file
-  phantom = 3,  // 3D Systems PHANToM / Touch through HDAPI: see available_devices() for whether this build has it
-  custom = 4,   // a class of the user's own that implements Device
-  path = 5,     // scripted moves and turns
-  hand = 6,     // a simulated hand that holds a simulated device: closes the loop
+  null = 0,       // a pose that never moves
+  press = 1,      // a scripted straight press
+  replay = 2,     // a trajectory from a file
+  phantom = 3,    // 3D Systems PHANToM / Touch through HDAPI: see available_devices() for whether this build has it
+  custom = 4,     // a class of the user's own that implements Device
+  path = 5,       // scripted moves and turns
+  hand = 6,       // a simulated hand that holds a simulated device: closes the loop
+  poke = 7,       // scripted pokes of least jerk
+  tremor = 8,     // a hand that only trembles
+  wander = 9,     // a hand that goes from one random place to the next
+  inverse3 = 10,  // Haply Inverse3 through its local service: see available_devices()
 };
 
 /// What a device senses, or a trajectory holds: bits of a mask.

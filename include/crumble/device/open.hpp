@@ -7,8 +7,11 @@
 #include <string_view>
 
 #include "crumble/device/hand.hpp"
+#include "crumble/device/poke.hpp"
 #include "crumble/device/replay.hpp"
 #include "crumble/device/scripted.hpp"
+#include "crumble/device/tremor.hpp"
+#include "crumble/device/wander.hpp"
 
 namespace crumble {
 
@@ -19,6 +22,9 @@ struct DeviceDef {
   PressOptions press = {};      // kind press
   PathOptions path = {};        // kind path
   HandOptions hand = {};        // kind hand
+  PokeOptions poke = {};        // kind poke
+  TremorOptions tremor = {};    // kind tremor
+  WanderOptions wander = {};    // kind wander
   ReplayOptions replay = {};    // kind replay
   std::string trajectory = {};  // kind replay: path of a .ctraj file
 };
