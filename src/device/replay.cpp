@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
 #include "crumble/device/pose_curve.hpp"
 #include "device/info_lines.hpp"
@@ -30,55 +31,53 @@ std::span<const TrajectoryRow> rows_on_ticks(std::span<const TrajectoryRow> rows
   return {first, last};
 }
 
-class ReplayDevice final : public Device {
+struct Setup {
+  const Trajectory& trajectory;
+  const PoseCurve& curve;
+  Window window;
+  EndPolicy end;
+  double tick;  // s
+};
+
+/// What the clocks have in common: how a row and a time are played.
+class Replay : public Device {
  public:
-  ReplayDevice(const Trajectory& trajectory, const PoseCurve& curve, const Window& window, EndPolicy end, double tick)
-      : columns_(trajectory.columns), rows_(trajectory.rows), curve_(curve), window_(window), end_(end), tick_(tick) {
-    recorded_ = rows_on_ticks(rows_, window_, tick_);
-    if (recorded_.size() < 2) recorded_ = {};
-    info_ = {.name = "replay", .kind = DeviceKind::replay, .rate = 1 / tick, .step_locked = true};
-    const std::string_view source = trajectory.value_of("device");
-    if (!source.empty()) info_.name += " of " + std::string(source);
-    constexpr std::uint32_t kVelocities = quantity::kLinearVelocity | quantity::kAngularVelocity;
-    constexpr std::uint32_t kPlayed = quantity::kPosition | quantity::kOrientation | quantity::kButtons | kVelocities;
-    info_.measured = columns_;
-    device::read_info_lines(trajectory, info_);
-    info_.measured &= columns_ & (recorded_.empty() ? kPlayed & ~kVelocities : kPlayed);
-  }
-
   const DeviceInfo& info() const noexcept override { return info_; }
-
-  ReadStatus read(DeviceSample& sample) noexcept override {
-    const bool finished = recorded_.empty() ? read_curve(sample) : read_row(sample);
-    sample.time = static_cast<double>(count_) * tick_;
-    sample.sequence = count_++;
-    if (!finished) return ReadStatus::ok;
-    sample.linear_velocity = sample.angular_velocity = Vec3::Zero();
-    sample.flags |= sample_flag::kFinished;
-    return ReadStatus::finished;
-  }
   void write(const Vec3&, const Vec3&) noexcept override {}
 
- private:
-  /// Sample k is row k. Returns whether the window is over.
-  bool read_row(DeviceSample& sample) const noexcept {
-    const std::size_t last = recorded_.size() - 1;
-    const bool finished = end_ == EndPolicy::hold && count_ > last;
-    // A lap ends where the next begins, so its last row is not played
-    const std::size_t k = end_ == EndPolicy::loop ? count_ % last : std::min<std::uint64_t>(count_, last);
-    const TrajectoryRow& row = recorded_[k];
+ protected:
+  explicit Replay(const Setup& setup)
+      : columns_(setup.trajectory.columns),
+        rows_(setup.trajectory.rows),
+        curve_(setup.curve),
+        window_(setup.window),
+        end_(setup.end),
+        tick_(setup.tick) {
+    info_ = {.name = "replay", .kind = DeviceKind::replay, .measured = columns_, .rate = 1 / tick_};
+    const std::string_view source = setup.trajectory.value_of("device");
+    if (!source.empty()) info_.name += " of " + std::string(source);
+    device::read_info_lines(setup.trajectory, info_);
+  }
+
+  /// Whether samples are rows or between them.
+  void set_measured(bool rows) {
+    constexpr std::uint32_t kVelocities = quantity::kLinearVelocity | quantity::kAngularVelocity;
+    constexpr std::uint32_t kCurve = quantity::kPosition | quantity::kOrientation | quantity::kButtons;
+    info_.measured &= columns_ & (rows ? kCurve | kVelocities : kCurve);
+  }
+
+  void play_row(const TrajectoryRow& row, DeviceSample& sample) const noexcept {
     const CurvePoint derived = curve_.at(row.time);
     sample.pose = row.pose;
     sample.linear_velocity = columns_ & quantity::kLinearVelocity ? row.linear_velocity : derived.linear_velocity;
     sample.angular_velocity = columns_ & quantity::kAngularVelocity ? row.angular_velocity : derived.angular_velocity;
     sample.buttons = row.buttons;
     sample.flags = row.flags & ~sample_flag::kFinished;
-    return finished;
   }
 
-  bool read_curve(DeviceSample& sample) const noexcept {
+  /// `elapsed` seconds after window_.from. Returns whether the window is over.
+  bool play_time(double elapsed, DeviceSample& sample) const noexcept {
     const double length = window_.to - window_.from;
-    double elapsed = static_cast<double>(count_) * tick_;
     const bool finished = end_ == EndPolicy::hold && elapsed > length + kSameTime * tick_;
     if (end_ == EndPolicy::loop) elapsed -= std::floor(elapsed / length) * length;
     const double time = std::clamp(window_.from + elapsed, window_.from, window_.to);
@@ -92,15 +91,94 @@ class ReplayDevice final : public Device {
     return finished;
   }
 
+  ReadStatus hand_out(DeviceSample& sample, double time, bool finished) noexcept {
+    sample.time = time;
+    sample.sequence = count_++;
+    if (!finished) return ReadStatus::ok;
+    sample.linear_velocity = sample.angular_velocity = Vec3::Zero();
+    sample.flags |= sample_flag::kFinished;
+    return ReadStatus::finished;
+  }
+
   DeviceInfo info_;
   std::uint32_t columns_;
   std::vector<TrajectoryRow> rows_;
-  std::span<const TrajectoryRow> recorded_;  // part of rows_: sample k is its row k; empty when resampling
   PoseCurve curve_;
   Window window_;
   EndPolicy end_;
   double tick_;
-  std::uint64_t count_ = 0;
+  std::uint64_t count_ = 0;  // samples handed out
+};
+
+class StepLockedReplay final : public Replay {
+ public:
+  explicit StepLockedReplay(const Setup& setup) : Replay(setup), recorded_(rows_on_ticks(rows_, window_, tick_)) {
+    if (recorded_.size() < 2) recorded_ = {};
+    info_.step_locked = true;
+    set_measured(!recorded_.empty());
+  }
+
+  ReadStatus read(DeviceSample& sample) noexcept override {
+    const double time = static_cast<double>(count_) * tick_;
+    return hand_out(sample, time, recorded_.empty() ? play_time(time, sample) : play_tick(sample));
+  }
+
+ private:
+  /// Sample k is row k.
+  bool play_tick(DeviceSample& sample) const noexcept {
+    const std::size_t last = recorded_.size() - 1;
+    // A lap ends where the next begins, so its last row is not played
+    const std::size_t k = end_ == EndPolicy::loop ? count_ % last : std::min<std::uint64_t>(count_, last);
+    play_row(recorded_[k], sample);
+    return end_ == EndPolicy::hold && count_ > last;
+  }
+
+  std::span<const TrajectoryRow> recorded_;  // part of rows_; empty when resampling
+};
+
+class RealtimeReplay final : public Replay {
+ public:
+  explicit RealtimeReplay(const Setup& setup) : Replay(setup) { set_measured(false); }
+
+  ReadStatus read(DeviceSample& sample) noexcept override {
+    const double now = wall_seconds();
+    if (count_ == 0) begin_ = now;
+    const double elapsed = now - begin_;
+    const bool over = end_ == EndPolicy::hold && elapsed > window_.to - window_.from;
+    if (count_ > 0 && !over && elapsed - last_ < tick_ / 2) return ReadStatus::no_new_sample;
+    last_ = elapsed;
+    return hand_out(sample, elapsed, play_time(elapsed, sample));
+  }
+
+ private:
+  double begin_ = 0, last_ = 0;  // s: wall time of the first read; from it to the last sample
+};
+
+class FastReplay final : public Replay {
+ public:
+  explicit FastReplay(const Setup& setup) : Replay(setup) {
+    const auto from = std::lower_bound(rows_.begin(), rows_.end(), window_.from,
+                                       [](const TrajectoryRow& row, double time) { return row.time < time; });
+    const auto to = std::find_if(from, rows_.end(), [&](const TrajectoryRow& row) {
+      return end_ == EndPolicy::loop ? row.time >= window_.to : row.time > window_.to;
+    });
+    if (from == to) throw Error(Code::empty, "replay.from, replay.to: no row lies between them");
+    played_ = {from, to};
+    set_measured(true);
+  }
+
+  ReadStatus read(DeviceSample& sample) noexcept override {
+    const std::uint64_t lap = count_ / played_.size();
+    const bool finished = end_ == EndPolicy::hold && lap > 0;
+    const TrajectoryRow& row = finished ? played_.back() : played_[count_ % played_.size()];
+    play_row(row, sample);
+    const double since = row.time - window_.from;
+    const double laps = end_ == EndPolicy::loop ? static_cast<double>(lap) * (window_.to - window_.from) : 0;
+    return hand_out(sample, since + laps, finished);
+  }
+
+ private:
+  std::span<const TrajectoryRow> played_;  // part of rows_
 };
 
 }  // namespace
@@ -113,7 +191,17 @@ std::unique_ptr<Device> open_replay(const Trajectory& trajectory, const ReplayOp
   require_in_range("replay.from", window.from, first, last);
   require_in_range("replay.to", window.to, first, last);
   require_positive("replay.to - replay.from", window.to - window.from);
-  return std::make_unique<ReplayDevice>(trajectory, curve, window, options.end, tick);
+  const Setup setup{trajectory, curve, window, options.end, tick};
+  switch (options.clock) {
+    case ReplayClock::step_locked:
+      return std::make_unique<StepLockedReplay>(setup);
+    case ReplayClock::realtime:
+      return std::make_unique<RealtimeReplay>(setup);
+    case ReplayClock::fast:
+      return std::make_unique<FastReplay>(setup);
+  }
+  throw Error(Code::out_of_range,
+              "replay.clock must lie in [0, 2], is " + std::to_string(static_cast<int>(options.clock)));
 }
 
 }  // namespace crumble

@@ -37,8 +37,11 @@ TEST(RealTime, NoDeviceAllocatesInATick) {
   EXPECT_EQ(allocations_in_ticks(*open_hand(hand, 1e-3), 2000), 0u);                                 // past its end
   EXPECT_EQ(allocations_in_ticks(*open_replay(motion, {}, 1e-3), 10000), 0u);                        // past its end
   EXPECT_EQ(allocations_in_ticks(*open_replay(motion, {.end = EndPolicy::loop}, 1e-3), 20000), 0u);  // several laps
-  EXPECT_EQ(allocations_in_ticks(*open_poke({.count = 2}, 1e-3), 5000), 0u);                         // past its end
-  EXPECT_EQ(allocations_in_ticks(*open_tremor({.seconds = 2}, 1e-3), 3000), 0u);                     // past its end
+  for (const ReplayClock clock : {ReplayClock::realtime, ReplayClock::fast}) {
+    EXPECT_EQ(allocations_in_ticks(*open_replay(motion, {.end = EndPolicy::loop, .clock = clock}, 1e-3), 20000), 0u);
+  }
+  EXPECT_EQ(allocations_in_ticks(*open_poke({.count = 2}, 1e-3), 5000), 0u);      // past its end
+  EXPECT_EQ(allocations_in_ticks(*open_tremor({.seconds = 2}, 1e-3), 3000), 0u);  // past its end
   EXPECT_EQ(allocations_in_ticks(*add_tremor(open_poke({}, 1e-3), {}), 3000), 0u);
   EXPECT_EQ(allocations_in_ticks(*open_wander({.max_turn = 1}, 1e-3), 20000), 0u);  // many moves
   Recorder recorder(open_null({}, 1e-3), 500);
