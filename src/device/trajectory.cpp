@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "crumble/base/text.hpp"
+#include "device/quoted.hpp"
 #include "device/trajectory_columns.hpp"
 
 namespace crumble {
@@ -49,22 +50,23 @@ TrajectoryRow to_row(const Cells& c) {
 
 std::optional<Problem> find_problem(const Cells& cells, std::optional<double> previous) {
   for (std::size_t i = 0; i < kColumnCount; ++i) {
-    const std::string column = std::string("column ") + kColumns[i].name;
-    if (!std::isfinite(cells[i]))
-      return Problem{Code::invalid_value, column + " must be finite, is " + to_text(cells[i])};
-    if (kColumns[i].whole && !(cells[i] >= 0 && cells[i] <= 0xffffffffu && std::floor(cells[i]) == cells[i])) {
-      return Problem{Code::out_of_range,
-                     column + " must be a whole number in [0, 4294967295], is " + to_text(cells[i])};
+    const Column& column = kColumns[i];
+    if (!std::isfinite(cells[i])) {
+      return Problem{Code::invalid_value, "must be finite, is " + to_text(cells[i]), column.name, i};
+    }
+    if (column.whole && !(cells[i] >= 0 && cells[i] <= 0xffffffffu && std::floor(cells[i]) == cells[i])) {
+      return Problem{Code::out_of_range, "must be a whole number in [0, 4294967295], is " + to_text(cells[i]),
+                     column.name, i};
     }
   }
   if (previous && !(cells[0] > *previous)) {
-    return Problem{Code::out_of_range,
-                   "column t must increase, is " + to_text(cells[0]) + " after " + to_text(*previous)};
+    return Problem{Code::out_of_range, "must increase, is " + to_text(cells[0]) + " after " + to_text(*previous), "t",
+                   0};
   }
   const double length =
       std::sqrt((cells[4] * cells[4] + cells[5] * cells[5]) + (cells[6] * cells[6] + cells[7] * cells[7]));
   if (!(std::abs(length - 1) <= 1e-3)) {
-    return Problem{Code::bad_pose, "columns qx qy qz qw must have length 1 within 1e-3, have " + to_text(length)};
+    return Problem{Code::bad_pose, "must have length 1 within 1e-3, have " + to_text(length), "qx qy qz qw", 4};
   }
   return std::nullopt;
 }
@@ -77,7 +79,7 @@ std::optional<Problem> find_problem(std::string_view header_line) {
     return Problem{Code::format, "a header line must not begin with '" + std::string(kEnd.substr(2)) + "'"};
   const auto units = value_in(header_line, "units");
   if (units && *units != kUnits) {
-    return Problem{Code::unsupported, "units must be '" + std::string(kUnits) + "', are '" + std::string(*units) + "'"};
+    return Problem{Code::unsupported, "units must be '" + std::string(kUnits) + "', are " + quoted(*units)};
   }
   return std::nullopt;
 }
@@ -114,7 +116,9 @@ void validate(const Trajectory& trajectory) {
   for (std::size_t i = 0; i < trajectory.rows.size(); ++i) {
     const device::Cells cells = device::to_cells(trajectory.rows[i]);
     if (const auto problem = device::find_problem(cells, previous)) {
-      throw Error(problem->code, "trajectory.rows[" + std::to_string(i) + "]: " + problem->text);
+      const char* noun = problem->columns.find(' ') == std::string::npos ? "column " : "columns ";
+      throw Error(problem->code,
+                  "trajectory.rows[" + std::to_string(i) + "]: " + noun + problem->columns + ' ' + problem->text);
     }
     previous = cells[0];
   }

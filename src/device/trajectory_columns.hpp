@@ -37,6 +37,8 @@ TrajectoryRow to_row(const Cells& cells);
 struct Problem {
   Code code;
   std::string text;
+  std::string columns = {};  // names of the cells at fault, when some are
+  std::size_t first = 0;     // index of the first of them
 };
 /// What is wrong with a row, if anything; `previous` is the time of the row before it.
 std::optional<Problem> find_problem(const Cells& cells, std::optional<double> previous);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "crumble/base/text.hpp"
+#include "device/quoted.hpp"
 #include "device/trajectory_columns.hpp"
 
 namespace crumble {
@@ -29,12 +30,13 @@ class Parser {
   void parse_magic() {
     next_line();
     if (!line_.starts_with(device::kMagic)) {
-      fail(Code::format, "is no .ctraj file: it must begin with '" + std::string(device::kMagic) + "'");
+      fail(Code::format, "is no .ctraj file: it must begin with '" + std::string(device::kMagic) + "', not with " +
+                             device::quoted(line_));
     }
     const std::string_view version = line_.substr(device::kMagic.size());
     if (version != device::kVersion) {
       fail(Code::version,
-           "has .ctraj version '" + std::string(version) + "', this library reads " + std::string(device::kVersion));
+           "has .ctraj version " + device::quoted(version) + ", this library reads " + std::string(device::kVersion));
     }
   }
 
@@ -53,9 +55,9 @@ class Parser {
     for (std::string_view left = line_; auto name = next_cell(left);) {
       const auto column =
           std::find_if(kColumns.begin(), kColumns.end(), [&](const auto& c) { return c.name == *name; });
-      if (column == kColumns.end()) fail(Code::format, "unknown column '" + std::string(*name) + "'");
+      if (column == kColumns.end()) fail_at(*name, "", Code::format, "unknown column " + device::quoted(*name));
       const auto index = static_cast<std::size_t>(column - kColumns.begin());
-      if (seen[index]) fail(Code::format, "column " + std::string(*name) + " stands twice");
+      if (seen[index]) fail_at(*name, "", Code::format, "column " + std::string(*name) + " stands twice");
       seen[index] = true;
       order_.push_back(index);
       out_.columns |= column->quantity;
@@ -77,7 +79,7 @@ class Parser {
     std::string end(device::kEnd);
     end += std::to_string(out_.rows.size());
     if (at_end_) fail(Code::corrupt, "is truncated: the end line '" + end + "' is missing");
-    if (line_ != end) fail(Code::corrupt, "the end line must be '" + end + "', is '" + std::string(line_) + "'");
+    if (line_ != end) fail(Code::corrupt, "the end line must be '" + end + "', is " + device::quoted(line_));
     if (next_line()) fail(Code::corrupt, "text after the end line");
     if (out_.rows.empty()) fail(Code::empty, "has no row");
   }
@@ -88,19 +90,19 @@ class Parser {
       fail(Code::format, std::to_string(count) + " cells, the column names are " + std::to_string(order_.size()));
     }
     Cells cells = device::to_cells({});
+    std::array<std::string_view, kColumnCount> texts;
     std::string_view left = line_;
     for (const std::size_t index : order_) {
-      const std::string_view cell = *next_cell(left);
+      const std::string_view cell = texts[index] = *next_cell(left);
       const auto value = parse_double(cell);
-      if (!value) {
-        fail(Code::format, std::string("column ") + kColumns[index].name + ": '" + std::string(cell.substr(0, 40)) +
-                               "' is not a number");
-      }
+      if (!value) fail_at(cell, kColumns[index].name, Code::format, device::quoted(cell) + " is not a number");
       cells[index] = *value;
     }
     std::optional<double> previous;
     if (!out_.rows.empty()) previous = out_.rows.back().time;
-    if (const auto problem = device::find_problem(cells, previous)) fail(problem->code, problem->text);
+    if (const auto problem = device::find_problem(cells, previous)) {
+      fail_at(texts[problem->first], problem->columns, problem->code, problem->text);
+    }
     out_.rows.push_back(device::to_row(cells));
   }
 
@@ -127,6 +129,14 @@ class Parser {
 
   [[noreturn]] void fail(Code code, const std::string& text) const {
     throw Error(code, name_ + ": line " + std::to_string(number_) + ": " + text);
+  }
+
+  /// At `cell`, a part of line_.
+  [[noreturn]] void fail_at(std::string_view cell, const std::string& columns, Code code,
+                            const std::string& text) const {
+    throw Error(code, name_ + ": line " + std::to_string(number_) + ", column " +
+                          std::to_string(cell.data() - line_.data() + 1) +
+                          (columns.empty() ? "" : " (" + columns + ")") + ": " + text);
   }
 
   std::string_view rest_;

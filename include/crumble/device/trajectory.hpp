@@ -40,7 +40,8 @@ void validate(const Trajectory& trajectory);
 
 /// The text of a file, which parses back to the same bits. Throws what validate throws.
 std::string format_trajectory(const Trajectory& trajectory);
-/// `name` stands in the messages, which also give the line (from 1) and the column's name. Throws Error:
+/// `name` stands in the messages, which also give the line and, where cells are at fault, the character (byte) in it
+/// where they begin, both from 1, and their columns' names: "line 7, column 3 (py)". Throws Error:
 /// empty (no text, no row), format (no magic line, missing, unknown or double column, a cell that is no number, wrong
 /// count of cells), version, unsupported (other units than SI), invalid_value, out_of_range, bad_pose (as validate),
 /// corrupt (end line missing or wrong), too_large.
