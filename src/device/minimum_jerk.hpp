@@ -8,12 +8,10 @@ inline double minimum_jerk(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }
 
-/// Its derivative, 30 s^2 (1 - s)^2.
+/// Its derivative, 30 s^2 (1 - s)^2: at most 1.875, half-way.
 inline double minimum_jerk_rate(double s) {
   const double u = s * (1 - s);
   return 30 * (u * u);
 }
-
-inline constexpr double kMinimumJerkPeak = 1.875;  // greatest rate, at s = 1/2
 
 }  // namespace crumble::device
