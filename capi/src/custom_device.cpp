@@ -14,6 +14,7 @@ static_assert(CRUMBLE_SENSES_ANGULAR_VELOCITY == quantity::kAngularVelocity);
 static_assert(CRUMBLE_SENSES_BUTTONS == quantity::kButtons);
 static_assert(CRUMBLE_SAMPLE_RESAMPLED == sample_flag::kResampled && CRUMBLE_SAMPLE_FINISHED == sample_flag::kFinished);
 static_assert(CRUMBLE_SAMPLE_UNCALIBRATED == sample_flag::kUncalibrated && CRUMBLE_SAMPLE_HELD == sample_flag::kHeld);
+static_assert(CRUMBLE_SAMPLE_FORCE_OFF == sample_flag::kForceOff);
 
 constexpr std::uint32_t kSenses = CRUMBLE_SENSES_POSITION | CRUMBLE_SENSES_ORIENTATION |
                                   CRUMBLE_SENSES_LINEAR_VELOCITY | CRUMBLE_SENSES_ANGULAR_VELOCITY |
@@ -88,14 +89,15 @@ DeviceInfo describe(const crumble_device_callbacks& c) {
 }
 
 DeviceSample from_c(const crumble_device_sample& told) {
-  DeviceSample sample{.time = told.time,
-                      .pose = to_pose(told.pose),
-                      .linear_velocity = to_vector(told.linear_velocity),
-                      .angular_velocity = to_vector(told.angular_velocity),
-                      .buttons = told.buttons,
-                      .flags = told.flags & (CRUMBLE_SAMPLE_RESAMPLED | CRUMBLE_SAMPLE_UNCALIBRATED),
-                      .sequence = told.sequence,
-                      .motor_temperature = told.motor_temperature};
+  DeviceSample sample{
+      .time = told.time,
+      .pose = to_pose(told.pose),
+      .linear_velocity = to_vector(told.linear_velocity),
+      .angular_velocity = to_vector(told.angular_velocity),
+      .buttons = told.buttons,
+      .flags = told.flags & (CRUMBLE_SAMPLE_RESAMPLED | CRUMBLE_SAMPLE_UNCALIBRATED | CRUMBLE_SAMPLE_FORCE_OFF),
+      .sequence = told.sequence,
+      .motor_temperature = told.motor_temperature};
   if (told.status == CRUMBLE_READ_FINISHED) sample.flags |= sample_flag::kFinished;
   return sample;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "crumble/device/attached.hpp"
+#include "crumble/device/hapi_log.hpp"
 #include "defs.hpp"
 #include "device_def.hpp"
 #include "objects.hpp"
@@ -51,6 +53,8 @@ crumble_device_info describe(const OpenDevice& open) {
   copy_to(info.workspace_low, out.workspace_low);
   copy_to(info.workspace_high, out.workspace_high);
   out.callback_error = open.callback_error();
+  copy_text(info.driver, out.driver);
+  copy_text(info.serial, out.serial);
   return out;
 }
 
@@ -79,6 +83,22 @@ Vec3 read_finite(const char* name, const double* v) {
   return {v[0], v[1], v[2]};
 }
 
+void record(OpenDevice& open, std::uint32_t capacity) {
+  if (capacity == 0) return;
+  auto recorder = std::make_unique<Recorder>(std::move(open.device), capacity);
+  open.recorder = recorder.get();
+  open.device = std::move(recorder);
+}
+
+crumble_attached_device describe(const AttachedDevice& found) {
+  crumble_attached_device out{};
+  out.kind = static_cast<std::uint32_t>(found.kind);
+  out.can_be_opened = found.can_be_opened;
+  copy_text(found.name, out.name);
+  copy_text(found.note, out.note);
+  return out;
+}
+
 std::unique_ptr<OpenDevice> open(const crumble_device_def& def) {
   auto made = std::make_unique<OpenDevice>();
   if (def.kind == CRUMBLE_DEVICE_CUSTOM) {
@@ -88,6 +108,7 @@ std::unique_ptr<OpenDevice> open(const crumble_device_def& def) {
   } else {
     made->device = open_device(to_device_def(def));
   }
+  record(*made, def.record_capacity);
   return made;
 }
 
@@ -136,7 +157,7 @@ crumble_result crumble_device_read(crumble_device device, crumble_device_sample*
     require_pointer("sample", sample);
     check_struct_size("sample", sample->struct_size);
     DeviceSample told;
-    const ReadStatus status = d.device->read(told);
+    const ReadStatus status = d.for_host().read(told);
     if (status == ReadStatus::lost) return fail_lost(d, call);
     if (status == ReadStatus::no_new_sample) {
       sample->status = CRUMBLE_READ_NO_NEW_SAMPLE;
@@ -152,7 +173,47 @@ crumble_result crumble_device_write(crumble_device device, const double* force, 
     require_pointer("force", force);
     const Vec3 f = read_finite("force", force);
     const Vec3 t = torque ? read_finite("torque", torque) : Vec3::Zero();
-    d.device->write(f, t);
+    d.for_host().write(f, t);
     return d.callback_error() == CRUMBLE_OK ? CRUMBLE_OK : fail_lost(d, call);
+  });
+}
+
+crumble_result crumble_device_get_text(crumble_device device, const char** text) {
+  return look<OpenDevice>(__func__, device, [&](const OpenDevice& d, const Call&) {
+    require_pointer("text", text);
+    *text = d.device->error_text();
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_device_save_trajectory(crumble_device device, const char* path) {
+  return with<OpenDevice>(__func__, device, [&](const OpenDevice& d, const Call& call) -> crumble_result {
+    require_pointer("path", path);
+    if (!d.recorder) return call.fail(CRUMBLE_E_STATE, {"nothing is recorded: record_capacity was 0"});
+    write_trajectory(path, d.recorder->trajectory());
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_trajectory_import_hapi(const char* log, double length_unit, const char* trajectory) {
+  return guard(__func__, [&](const Call&) {
+    require_pointer("log", log);
+    require_pointer("trajectory", trajectory);
+    write_trajectory(trajectory, read_hapi_log(log, {.length_unit = length_unit}));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_device_find_attached(const char* library, crumble_attached_device* devices, uint32_t capacity,
+                                            uint32_t* count) {
+  return guard(__func__, [&](const Call& call) -> crumble_result {
+    require_pointer("count", count);
+    if (capacity > 0) require_pointer("devices", devices);
+    const auto found = attached_devices({.library = library ? library : ""});
+    const auto fit = std::min<std::size_t>(found.size(), capacity);
+    for (std::size_t i = 0; i < fit; ++i) devices[i] = describe(found[i]);
+    *count = static_cast<uint32_t>(found.size());
+    if (fit == found.size()) return CRUMBLE_OK;
+    return call.fail(CRUMBLE_E_BUFFER_TOO_SMALL, {"capacity is smaller than the number of devices, see count"});
   });
 }

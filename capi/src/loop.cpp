@@ -15,6 +15,7 @@ Loop::~Loop() {
 }
 
 void Loop::add_device(crumble_device handle, OpenDevice& device) {
+  device.polled.reset();  // its thread is the loop's now
   devices_.push_back({handle, &device, Need(device.loops)});
 }
 

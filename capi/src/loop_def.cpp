@@ -14,6 +14,7 @@ static_assert(CRUMBLE_COUPLING_PAPER == static_cast<int>(BodyCoupling::paper));
 static_assert(CRUMBLE_DRIVER_OWN_THREAD == static_cast<int>(LoopDriver::own_thread));
 static_assert(CRUMBLE_DRIVER_DEVICE == static_cast<int>(LoopDriver::device));
 static_assert(CRUMBLE_DRIVER_HOST == static_cast<int>(LoopDriver::host));
+static_assert(CRUMBLE_DRIVER_AUTOMATIC == static_cast<int>(LoopDriver::automatic));
 static_assert(CRUMBLE_MOST_HANDS == kMaxHands);
 
 crumble_loop_def default_loop_def() {
@@ -78,7 +79,7 @@ LoopDef read_loop_def(const crumble_loop_def* def) {
   const crumble_loop_def given = read_def("def", def, default_loop_def());
   require_at_most("coupling", given.coupling, CRUMBLE_COUPLING_PAPER);
   require_at_most("body_thread", given.body_thread, 1);
-  require_at_most("driver", given.driver, CRUMBLE_DRIVER_HOST);
+  require_at_most("driver", given.driver, CRUMBLE_DRIVER_AUTOMATIC);
   require_at_most("watchdog", given.watchdog, 1);
   require_between("priority", given.priority, 0, 99);
   require_between("processor", given.processor, -1, 1023);

@@ -18,6 +18,7 @@ static_assert(CRUMBLE_FAULT_SILENT == static_cast<int>(Fault::silent));
 static_assert(CRUMBLE_FAULT_DEVICE_LOST == static_cast<int>(Fault::device_lost));
 static_assert(CRUMBLE_FAULT_BODY == static_cast<int>(Fault::body));
 static_assert(CRUMBLE_FAULT_HALTED == static_cast<int>(Fault::halted));
+static_assert(CRUMBLE_FAULT_DRIVER == static_cast<int>(Fault::driver));
 static_assert(CRUMBLE_HAND_WAITING == static_cast<int>(HandState::waiting));
 static_assert(CRUMBLE_HAND_RAMPING == static_cast<int>(HandState::ramping));
 static_assert(CRUMBLE_HAND_RUNNING == static_cast<int>(HandState::running));
@@ -168,9 +169,9 @@ crumble_result crumble_loop_reset_fault(crumble_loop loop, uint32_t hand) {
 }
 
 const char* crumble_fault_name(uint32_t fault) {
-  return fault <= CRUMBLE_FAULT_HALTED ? to_string(static_cast<Fault>(fault)) : "unknown";
+  return fault <= CRUMBLE_FAULT_DRIVER ? to_string(static_cast<Fault>(fault)) : "unknown";
 }
 
 const char* crumble_fault_reason(uint32_t fault) {
-  return fault <= CRUMBLE_FAULT_HALTED ? reason(static_cast<Fault>(fault)) : "no such fault";
+  return fault <= CRUMBLE_FAULT_DRIVER ? reason(static_cast<Fault>(fault)) : "no such fault";
 }

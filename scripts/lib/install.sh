@@ -3,7 +3,7 @@
 
 # The library, the command line, and the pictures that it draws off screen.
 build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev libccd-dev libfcl-dev nlohmann-json3-dev
-  libcli11-dev libepoxy-dev libegl1 libgl1-mesa-dri libstb-dev libtinygltf-dev libpugixml-dev gnuplot-nox)
+  libboost-dev libcli11-dev libepoxy-dev libegl1 libgl1-mesa-dri libstb-dev libtinygltf-dev libpugixml-dev gnuplot-nox)
 # Beside these: test and benchmark frameworks, libraries that results are compared with, a second compiler and its
 # formatter.
 test_packages=(ccache libgtest-dev libbenchmark-dev libbullet-dev libassimp-dev clang clang-format)

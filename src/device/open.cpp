@@ -11,8 +11,13 @@ constexpr std::array kAllKinds = {DeviceKind::null,   DeviceKind::press,  Device
                                   DeviceKind::custom, DeviceKind::path,   DeviceKind::hand,    DeviceKind::poke,
                                   DeviceKind::tremor, DeviceKind::wander, DeviceKind::inverse3};
 // A custom device is handed over as an object; there is nothing to open.
-constexpr std::array kAvailable = {DeviceKind::null, DeviceKind::press, DeviceKind::replay, DeviceKind::path,
-                                   DeviceKind::hand, DeviceKind::poke,  DeviceKind::tremor, DeviceKind::wander};
+constexpr std::array kAvailable = {
+    DeviceKind::null,     DeviceKind::press, DeviceKind::replay, DeviceKind::phantom, DeviceKind::path,
+    DeviceKind::hand,     DeviceKind::poke,  DeviceKind::tremor, DeviceKind::wander,
+#ifdef CRUMBLE_HAS_INVERSE3
+    DeviceKind::inverse3,
+#endif
+};
 
 std::string list(std::span<const DeviceKind> kinds) {
   std::string text;
@@ -79,9 +84,11 @@ std::unique_ptr<Device> open_device(const DeviceDef& def) {
       return open_wander(def.wander, def.tick);
     case DeviceKind::replay:
       return open_replay(read_trajectory(def.trajectory), def.replay, def.tick);
-    case DeviceKind::phantom:
-    case DeviceKind::custom:
     case DeviceKind::inverse3:
+      return open_inverse3(def.inverse3);
+    case DeviceKind::phantom:
+      return open_phantom(def.phantom);
+    case DeviceKind::custom:
       break;
   }
   throw Error(Code::unsupported, "device kind " + std::string(to_string(def.kind)) +

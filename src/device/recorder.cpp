@@ -43,6 +43,7 @@ ReadStatus Recorder::read(DeviceSample& sample) noexcept {
 
 void Recorder::write(const Vec3& force, const Vec3& torque) noexcept {
   if (last_kept_) rows_[size_ - 1].force = force, rows_[size_ - 1].torque = torque;
+  last_kept_ = false;
   device_->write(force, torque);
 }
 

@@ -22,6 +22,8 @@ const char* to_string(Fault fault) noexcept {
       return "body";
     case Fault::halted:
       return "halted";
+    case Fault::driver:
+      return "driver";
   }
   return "unknown";
 }
@@ -46,6 +48,8 @@ const char* reason(Fault fault) noexcept {
       return "the body left the world: reset the simulation";
     case Fault::halted:
       return "halt() was called";
+    case Fault::driver:
+      return "the device's own driver took the force away";
   }
   return "unknown fault";
 }

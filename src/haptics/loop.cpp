@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/clock.hpp"
 #include "crumble/base/text.hpp"
 #include "haptics/loop_state.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kLeastTick = 1e-4, kMostTick = 0.01;
 constexpr double kWatchPeriod = 2e-3;
+constexpr double kStartTime = 1;  // s that a device may take to its first tick
 constexpr std::uint32_t kMostBodyTicks = 100;
 
 bool is_direct(const LoopDef& def) {
@@ -85,12 +87,40 @@ std::vector<std::uint32_t> holders_of(const LoopDef& def) {
   return holders;
 }
 
+// Time in the loop goes by the tick's length, whoever calls it.
+void require_same_rate(const LoopDef& def, const DeviceInfo& info) {
+  constexpr double kSame = 0.01;
+  if (info.rate <= 0 || std::abs(info.rate * def.tick - 1) <= kSame) return;
+  throw Error(Code::out_of_range, "tick is " + to_text(def.tick) + " s, but '" + info.name + "' ticks at " +
+                                      to_text(info.rate) + " Hz, which makes " + to_text(1 / info.rate) + " s");
+}
+
 Device* driving_device(const LoopDef& def) {
-  if (def.driver != LoopDriver::device) return nullptr;
+  if (def.driver == LoopDriver::own_thread || def.driver == LoopDriver::host) return nullptr;
   for (const HandDef& hand : def.hands) {
-    if (hand.device->info().servo_driven) return hand.device;
+    const DeviceInfo& info = hand.device->info();
+    if (!info.servo_driven) continue;
+    require_same_rate(def, info);
+    return hand.device;
   }
+  if (def.driver == LoopDriver::automatic) return nullptr;
   throw Error(Code::unsupported, "driver is device, but none of the devices has a thread of its own");
+}
+
+bool needs_polling(const Device& device, const Device* driving) {
+  const DeviceInfo& info = device.info();
+  if (!info.servo_driven || &device == driving) return false;
+  return !driving || !info.servo_group || info.servo_group != driving->info().servo_group;
+}
+
+// The exchange makes a force a tick late.
+LoopDef with_polled(LoopDef def, const Device* driving, std::deque<PolledDevice>& polled) {
+  for (HandDef& hand : def.hands) {
+    if (!needs_polling(*hand.device, driving)) continue;
+    hand.device = &polled.emplace_back(*hand.device);
+    hand.passivity.delay = std::min(hand.passivity.delay + 1, kMostDelay);
+  }
+  return def;
 }
 
 // What a spring that one knows beforehand will ask for.
@@ -147,14 +177,14 @@ void apply_paper_preset(LoopDef& def) {
 }
 
 HapticLoop::State::State(Simulation& simulation, LoopDef definition)
-    : def((check_times(simulation, definition), check_hands(simulation, definition), std::move(definition))),
+    : driving((check_times(simulation, definition), check_hands(simulation, definition), driving_device(definition))),
+      def(with_polled(std::move(definition), driving, polled)),
       warnings(find_warnings(def)),
       sim(simulation),
       stepper(simulation, holders_of(def)),
       body(is_direct(def) ? haptics::make_direct_link(stepper) : haptics::make_model_link(stepper, def)),
       poses(simulation.holder_count()),
-      moved_by_hand(simulation.holder_count(), 0),
-      driving(driving_device(def)) {
+      moved_by_hand(simulation.holder_count(), 0) {
   for (const HandDef& hand : def.hands) {
     hands.emplace_back(hand, def.tick, mean_of(sim, def), 2 * body_step(def));
     moved_by_hand[hand.holder] = 1;
@@ -207,9 +237,9 @@ void HapticLoop::start() {
   State& s = *state_;
   if (s.running.exchange(true)) throw Error(Code::state, "the loop runs already");
   try {
-    s.gate.wrote(0);
+    s.gate.wrote(s.driving ? wall_seconds() + kStartTime : 0);
     s.body->start();
-    if (s.def.watchdog && !s.driving) {
+    if (s.def.watchdog) {
       s.watchdog.start(
           kWatchPeriod, {.priority = watchdog_priority(s.def.thread)},
           [](void* state) noexcept {
@@ -219,7 +249,7 @@ void HapticLoop::start() {
           &s);
     }
     if (s.driving) s.driving->start_servo({tick_again, this});
-    if (s.def.driver == LoopDriver::own_thread) s.servo.start(s.def.tick, s.def.thread, tick_again, this);
+    if (!s.driving && s.def.driver != LoopDriver::host) s.servo.start(s.def.tick, s.def.thread, tick_again, this);
   } catch (...) {
     stop();
     throw;

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "crumble/base/shared_value.hpp"
+#include "crumble/device/polled.hpp"
 #include "haptics/body_link.hpp"
 #include "haptics/hand_channel.hpp"
 #include "haptics/periodic_thread.hpp"
@@ -20,7 +21,10 @@ struct HapticLoop::State {
   void report() noexcept;
   void measure(double begin) noexcept;
   void watch() noexcept;
+  void tell_stalled() noexcept;
 
+  Device* driving;                  // device that calls the ticks; null: none does
+  std::deque<PolledDevice> polled;  // round those with a thread of their own that do not drive
   LoopDef def;
   std::vector<std::string> warnings;
   Simulation& sim;
@@ -33,7 +37,6 @@ struct HapticLoop::State {
 
   haptics::DeviceGate gate;
   haptics::PeriodicThread servo, watchdog;
-  Device* driving = nullptr;  // device that calls the ticks
   std::atomic<bool> running{false};
 
   // the ticking thread's

@@ -16,7 +16,7 @@ constexpr double kLeastSpeed = 0.01;   // m/s: below it the controller would div
 
 void check(const PassivityOptions& o) {
   require_finite("passivity.delay", o.delay);
-  require_in_range("passivity.delay", o.delay, 0, 64);
+  require_in_range("passivity.delay", o.delay, 0, kMostDelay);
   require_finite("passivity.max_damping", o.max_damping);
   require_in_range("passivity.max_damping", o.max_damping, 0, 1e3);
   require_positive("passivity.energy_credit", o.energy_credit);

@@ -43,6 +43,7 @@ Fault SampleGuard::take(ReadStatus status, const DeviceSample& told, SafetyCount
     good_ = waited_ >= silence_ ? 0 : good_;
     return any_ && waited_ >= silence_ ? Fault::silent : Fault::none;
   }
+  if (told.flags & sample_flag::kForceOff) return forget(), Fault::driver;
   const Quat& q = told.pose.orientation;
   const bool finite = is_finite(told.pose.position) && std::isfinite(q.w() + q.x() + q.y() + q.z()) &&
                       is_finite(told.linear_velocity) && is_finite(told.angular_velocity);

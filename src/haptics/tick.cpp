@@ -64,6 +64,16 @@ void HapticLoop::State::measure(double begin) noexcept {
   if (since > 0) rate.store(static_cast<double>(period.count()) / since, std::memory_order_relaxed);
 }
 
+// Calls to the devices belong to the thread that does not come: it gets the fault when it does, and status at once.
+void HapticLoop::State::tell_stalled() noexcept {
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    status.hands[i].state = HandState::faulted;
+    status.hands[i].fault = Fault::stalled;
+  }
+  status.watchdog = watchdog_count.load(std::memory_order_relaxed);
+  published.store(status);
+}
+
 // Every few milliseconds, by the watchdog's thread.
 void HapticLoop::State::watch() noexcept {
   const double last = gate.last_write();
@@ -73,7 +83,11 @@ void HapticLoop::State::watch() noexcept {
   if (gate.last_write() == last) {
     gate.wrote(0);  // done; the next tick that comes through starts it again
     watchdog_count.store(watchdog_count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-    for (HandChannel& hand : hands) hand.take_force_away();
+    if (driving) {
+      tell_stalled();
+    } else {
+      for (HandChannel& hand : hands) hand.take_force_away();
+    }
   }
   gate.leave();
 }

@@ -1,9 +1,11 @@
 // Devices through C, against the same through C++.
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 
 #include "capi/loop_rig.hpp"
+#include "crumble/base/file.hpp"
 #include "crumble/device/open.hpp"
 
 namespace crumble {
@@ -116,11 +118,124 @@ TEST_F(Devices, ReplayOfAPartAgainAndAgain) {
   expect_like({.kind = DeviceKind::replay, .replay = {0.1, 0.13, EndPolicy::loop}, .trajectory = kTrajectory}, 100);
 }
 
+TEST_F(Devices, ReplayRowByRow) {
+  def.kind = CRUMBLE_DEVICE_REPLAY;
+  def.trajectory = kTrajectory.c_str();
+  def.replay_clock = CRUMBLE_CLOCK_FAST;
+  open();
+  const std::unique_ptr<Device> other =
+      open_device({.kind = DeviceKind::replay, .replay = {.clock = ReplayClock::fast}, .trajectory = kTrajectory});
+  DeviceSample expected;
+  for (int row = 0; row < 2; ++row) {
+    EXPECT_EQ(other->read(expected), ReadStatus::ok);
+    EXPECT_EQ(read().time, expected.time);
+  }
+}
+
+TEST_F(Devices, Poke) {
+  def.kind = CRUMBLE_DEVICE_POKE;
+  def.press_direction[0] = 1;
+  def.poke_depth = 0.02, def.poke_in = 0.03, def.poke_hold = 0.01, def.poke_out = 0.02, def.poke_rest = 0.04;
+  def.poke_count = 2;
+  expect_like({.kind = DeviceKind::poke, .poke = {kStart, {1, -1, 0}, 0.02, 0.03, 0.01, 0.02, 0.04, 2}}, 200);
+}
+
+TEST_F(Devices, Tremor) {
+  def.kind = CRUMBLE_DEVICE_TREMOR;
+  def.tremor_amplitude = 2e-4, def.tremor_low = 5, def.tremor_high = 20, def.seed = 7, def.seconds = 0.1;
+  expect_like({.kind = DeviceKind::tremor, .tremor = {kStart, 2e-4, 5, 20, 7, 0.1}}, 200);
+}
+
+TEST_F(Devices, Wander) {
+  def.kind = CRUMBLE_DEVICE_WANDER;
+  def.wander_low[0] = -0.01, def.wander_high[2] = 0.03;
+  def.wander_slowest = 0.1, def.wander_fastest = 0.2, def.wander_max_pause = 0.1, def.wander_max_turn = 1;
+  def.seed = 1ull << 40, def.seconds = 2;
+  const WanderOptions wander{kStart, {-0.01, -0.02, -0.02}, {0.02, 0.02, 0.03}, 0.1, 0.2, 0.1, 1, 1ull << 40, 2};
+  expect_like({.kind = DeviceKind::wander, .wander = wander}, 3000);
+}
+
+TEST_F(Devices, WhatIsRecordedCanBeSavedAndPlayed) {
+  const std::string path = (std::filesystem::temp_directory_path() / "crumble_recorded.ctraj").string();
+  def.kind = CRUMBLE_DEVICE_TREMOR;
+  open();
+  expect_failure(CRUMBLE_E_STATE, crumble_device_save_trajectory(device, path.c_str()), {"record_capacity"});
+  EXPECT_RESULT(CRUMBLE_OK, crumble_device_destroy(device));
+  def.record_capacity = 20;
+  open();
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_save_trajectory(device, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_EMPTY, crumble_device_save_trajectory(device, path.c_str()));
+  const double force[3] = {1, 2, 3};
+  double last = 0;
+  for (int k = 0; k < 25; ++k) {
+    const crumble_device_sample sample = read();
+    if (k == 19) last = sample.pose.position[1];
+    ASSERT_OK(crumble_device_write(device, force, nullptr));
+  }
+  ASSERT_OK(crumble_device_save_trajectory(device, path.c_str()));
+  expect_failure(CRUMBLE_E_IO, crumble_device_save_trajectory(device, "/no/such/folder/a.ctraj"), {"/no/such/folder"});
+  const Trajectory trajectory = read_trajectory(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(trajectory.rows.size(), 20u);
+  EXPECT_EQ(trajectory.rows.back().pose.position.y(), last);
+  EXPECT_EQ(trajectory.rows.back().force, Vec3(1, 2, 3));
+  EXPECT_EQ(trajectory.value_of("dropped"), "5");
+}
+
+TEST_F(Devices, AnInverse3ThatIsNotThereIsRefusedInWords) {
+  const auto kinds = available_devices();
+  if (std::ranges::find(kinds, DeviceKind::inverse3) == kinds.end()) GTEST_SKIP() << "built without Boost.Beast";
+  def.kind = CRUMBLE_DEVICE_INVERSE3;
+  def.inverse3_host = "127.0.0.1";
+  def.inverse3_port = 1;
+  def.inverse3_timeout = 1;
+  expect_bad(CRUMBLE_E_IO, {"127.0.0.1:1"});
+  def.kind = CRUMBLE_DEVICE_INVERSE3;
+  def.inverse3_port = 0;
+  expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"port"});
+  def.kind = CRUMBLE_DEVICE_INVERSE3;
+  def.inverse3_timeout = kNan;
+  expect_bad(CRUMBLE_E_INVALID_VALUE, {"timeout"});
+}
+
+TEST_F(Devices, TextIsEmptyWhereNothingIsWrong) {
+  open();
+  const char* text = nullptr;
+  ASSERT_OK(crumble_device_get_text(device, &text));
+  EXPECT_STREQ(text, "");
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_get_text(device, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_get_text(nullptr, &text));
+}
+
+TEST_F(Devices, AttachedOnesAreCounted) {
+  std::uint32_t count = 99;
+  const crumble_result result = crumble_device_find_attached("/no/such/libHD.so", nullptr, 0, &count);
+  EXPECT_EQ(result, count == 0 ? CRUMBLE_OK : CRUMBLE_E_BUFFER_TOO_SMALL) << "as many as are plugged in here";
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_find_attached(nullptr, nullptr, 0, nullptr));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_find_attached(nullptr, nullptr, 1, &count));
+}
+
+TEST_F(Devices, ALogOfHapiBecomesATrajectory) {
+  const auto folder = std::filesystem::temp_directory_path();
+  const std::string log = (folder / "crumble_hapi.log").string(), out = (folder / "crumble_hapi.ctraj").string();
+  write_text(log, "TIME POSITION\n0 0 0 1000\n0.001 0 2 1000\n");
+  ASSERT_OK(crumble_trajectory_import_hapi(log.c_str(), 1e-3, out.c_str()));
+  const Trajectory trajectory = read_trajectory(out);
+  ASSERT_EQ(trajectory.rows.size(), 2u);
+  EXPECT_EQ(trajectory.rows[1].pose.position, Vec3(0, 0.002, 1));
+  write_text(log, "TIME POSITION\n0 0 zero 1000\n");
+  expect_failure(CRUMBLE_E_FORMAT, crumble_trajectory_import_hapi(log.c_str(), 1, out.c_str()), {"line 2", "zero"});
+  EXPECT_RESULT(CRUMBLE_E_OUT_OF_RANGE, crumble_trajectory_import_hapi(log.c_str(), 0, out.c_str()));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_trajectory_import_hapi(nullptr, 1, out.c_str()));
+  EXPECT_RESULT(CRUMBLE_E_NULL, crumble_trajectory_import_hapi(log.c_str(), 1, nullptr));
+  std::filesystem::remove(log), std::filesystem::remove(out);
+}
+
 TEST_F(Devices, KindsGoByName) {
   std::vector<std::string> names;
   while (const char* name = crumble_device_kind_name(static_cast<std::uint32_t>(names.size()))) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "path", "hand", "poke", "tremor", "wander",
-                                             "custom"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "phantom", "path", "hand", "poke", "tremor",
+                                             "wander", "inverse3", "custom"}));
   EXPECT_EQ(crumble_device_kind_name(~0u), nullptr);
   std::uint32_t kind = 99;
   ASSERT_OK(crumble_device_kind("hand", &kind));
@@ -132,13 +247,28 @@ TEST_F(Devices, KindsGoByName) {
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_kind(nullptr, &kind));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_device_kind("hand", nullptr));
   def.kind = CRUMBLE_DEVICE_PHANTOM;
-  expect_bad(CRUMBLE_E_UNSUPPORTED, {"crumble_device_open", "phantom", "null, press, replay, path, hand"});
+  def.phantom_library = "/no/such/libHD.so";
+  expect_bad(CRUMBLE_E_UNSUPPORTED, {"crumble_device_open", "no HDAPI can be loaded", "/no/such/libHD.so"});
 }
 
 TEST_F(Devices, BadFieldsAreNamed) {
   const crumble_motion_point good[] = {{0.1, {0, 0, 0}, {}}};
   const crumble_motion_point backward[] = {{0.1, {0, 0, 0}, {}}, {0.1, {0, 0, 0}, {}}};
-  def.kind = 7, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"kind", "7"});
+  def.kind = 11, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"kind", "11"});
+  def.reserved2 = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"reserved2"});
+  def.replay_clock = 3, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_clock", "3"});
+  def.record_capacity = 10'000'001, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"record_capacity", "10000001"});
+  def.inverse3_port = 65536, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"inverse3_port", "65536"});
+  for (std::uint32_t crumble_device_def::*flag :
+       {&crumble_device_def::phantom_torque, &crumble_device_def::phantom_reset_encoders,
+        &crumble_device_def::phantom_keep_enabled}) {
+    def.*flag = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"phantom_", "2"});
+  }
+  def.kind = CRUMBLE_DEVICE_PHANTOM, def.phantom_rate = 10, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"phantom.rate", "10"});
+  def.kind = CRUMBLE_DEVICE_POKE, def.poke_in = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke.in"});
+  def.kind = CRUMBLE_DEVICE_POKE, def.poke_count = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke.count"});
+  def.kind = CRUMBLE_DEVICE_TREMOR, def.tremor_high = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"tremor.high"});
+  def.kind = CRUMBLE_DEVICE_WANDER, def.wander_low[1] = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"wander.low"});
   def.reserved = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"reserved"});
   def.replay_loop = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_loop", "2"});
   def.tick = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"tick", "0"});

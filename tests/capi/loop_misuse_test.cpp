@@ -26,7 +26,7 @@ class LoopMisuse : public LoopTest {
 
 TEST_F(LoopMisuse, BadLoopFieldsAreNamed) {
   loop_def.coupling = 3, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"crumble_loop_create", "coupling", "3"});
-  loop_def.driver = 3, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"driver", "3"});
+  loop_def.driver = 4, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"driver", "4"});
   loop_def.body_thread = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"body_thread", "2"});
   loop_def.watchdog = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"watchdog", "2"});
   loop_def.lock_memory = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"lock_memory", "2"});
@@ -179,10 +179,10 @@ TEST_F(LoopMisuse, TextsComeIntoBuffers) {
 TEST_F(LoopMisuse, FaultsHaveNamesAndReasons) {
   EXPECT_STREQ(crumble_fault_name(CRUMBLE_FAULT_NONE), "none");
   EXPECT_STREQ(crumble_fault_name(CRUMBLE_FAULT_STALLED), "stalled");
-  EXPECT_STREQ(crumble_fault_name(9), "unknown");
+  EXPECT_STREQ(crumble_fault_name(10), "unknown");
   EXPECT_STREQ(crumble_fault_name(~0u), "unknown");
-  for (std::uint32_t fault = 0; fault <= CRUMBLE_FAULT_HALTED; ++fault) {
-    EXPECT_NE(std::string(crumble_fault_reason(fault)), crumble_fault_reason(9)) << fault;
+  for (std::uint32_t fault = 0; fault <= CRUMBLE_FAULT_DRIVER; ++fault) {
+    EXPECT_NE(std::string(crumble_fault_reason(fault)), crumble_fault_reason(10)) << fault;
   }
 }
 

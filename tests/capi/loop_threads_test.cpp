@@ -246,6 +246,38 @@ TEST_F(RunningLoops, ADeviceMayDrive) {
   close();
 }
 
+// Read and written by the host, then by a loop that the device drives, and again by the host.
+TEST_F(RunningLoops, ADeviceWithAThreadServesOneAtATime) {
+  Driver driver;
+  driver.height = 0.004;
+  device = Strings::open(driver.callbacks());
+  crumble_device_sample sample{};
+  sample.struct_size = sizeof sample;
+  bool any = false;
+  const auto has_sample = [&] {
+    EXPECT_RESULT(CRUMBLE_OK, crumble_device_read(device, &sample));
+    return any = any || sample.status == CRUMBLE_READ_OK;
+  };
+  EXPECT_TRUE(wait_for(has_sample));
+  EXPECT_EQ(sample.pose.position[1], 0.004);
+  EXPECT_TRUE(driver.thread.joinable()) << "its thread was started";
+  const double force[3] = {0, 0.5, 0};
+  ASSERT_OK(crumble_device_write(device, force, nullptr));
+
+  loop_def.driver = CRUMBLE_DRIVER_AUTOMATIC;
+  make_loop(device);
+  EXPECT_FALSE(driver.thread.joinable()) << "and stopped for the loop";
+  EXPECT_EQ(driver.last_force, 0);
+  expect_failure(CRUMBLE_E_IN_USE, crumble_device_read(device, &sample), {"a loop has the device"});
+  ASSERT_OK(crumble_loop_start(loop));
+  EXPECT_TRUE(wait_for([&] { return status().ticks > 20; }));
+  ASSERT_OK(crumble_loop_destroy(loop));
+  loop = nullptr;
+  any = false;
+  EXPECT_TRUE(wait_for(has_sample));
+  close();
+}
+
 TEST_F(RunningLoops, ACallbackMayAskButNotStop) {
   struct Asker : Strings {
     crumble_loop loop = nullptr;

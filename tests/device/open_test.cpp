@@ -13,6 +13,8 @@ TEST(Open, OpensEveryKindThatItLists) {
   def.hand.points = {{.time = 1}};
   def.trajectory = std::string(CRUMBLE_SOURCE_DIR) + "/examples/trajectories/press_1mm_s.ctraj";
   for (const DeviceKind kind : available_devices()) {
+    if (kind == DeviceKind::phantom) continue;   // needs a driver: tests/fakehd
+    if (kind == DeviceKind::inverse3) continue;  // needs a service: tests/inverse3
     def.kind = kind;
     const auto device = open_device(def);
     EXPECT_EQ(device->info().kind, kind);
@@ -29,12 +31,11 @@ TEST(Open, OpensEveryKindThatItLists) {
 }
 
 TEST(Open, RefusesTheRestWithTheListOfWhatThereIs) {
-  for (const DeviceKind kind :
-       {DeviceKind::phantom, DeviceKind::custom, DeviceKind::inverse3, static_cast<DeviceKind>(77)}) {
+  for (const DeviceKind kind : {DeviceKind::custom, static_cast<DeviceKind>(77)}) {
     const Error error = error_of([&] { open_device({.kind = kind}); });
     EXPECT_EQ(error.code(), Code::unsupported);
     EXPECT_TRUE(mentions(error, to_string(kind))) << error.what();
-    EXPECT_TRUE(mentions(error, "null, press, replay, path, hand, poke, tremor, wander")) << error.what();
+    EXPECT_TRUE(mentions(error, "null, press, replay, phantom, path, hand, poke, tremor, wander")) << error.what();
   }
   EXPECT_EQ(error_of([] { open_device({.kind = DeviceKind::replay, .trajectory = "none.ctraj"}); }).code(), Code::io);
 }

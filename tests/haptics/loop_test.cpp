@@ -351,6 +351,106 @@ const Refusal kRefusals[] = {
 INSTANTIATE_TEST_SUITE_P(All, LoopRefuses, testing::ValuesIn(kRefusals),
                          [](const auto& param) { return std::string(param.param.name); });
 
+// A device with a thread of its own, its hand touching the body. Returns whether the force came through.
+bool feels(HapticLoop& loop, Caller& caller, const std::function<void()>& tick) {
+  double& y = caller.sample.pose.position.y();
+  for (int i = 0; i < 1200; ++i) {
+    if (i > 800) y -= 1e-5;
+    tick();
+  }
+  EXPECT_EQ(loop.status().hands[0].state, HandState::running);
+  return caller.force.y() > 0.01;
+}
+
+TEST(Loop, ADeviceWithAThreadDrivesUnlessTheHostDoes) {
+  for (const LoopDriver driver : {LoopDriver::automatic, LoopDriver::device, LoopDriver::host}) {
+    Caller caller;
+    caller.sample.pose.position.y() = 0.001;
+    LoopRig rig([&](LoopDef& def) {
+      def.driver = driver;
+      def.watchdog = false;  // time stands still here
+      def.hands[0].device = &caller;
+    });
+    const bool host = driver == LoopDriver::host;
+    EXPECT_EQ(caller.servo.call != nullptr, host) << "a host's loop exchanges with it from the first";
+    EXPECT_EQ(rig.loop->definition().hands[0].passivity.delay, host ? 2 : 1);
+    rig.loop->start();
+    EXPECT_TRUE(feels(*rig.loop, caller, [&] {
+      caller.turn();
+      if (host) rig.loop->tick();
+    }));
+    rig.loop->stop();
+    caller.turn();  // one whose thread goes on gets the zero there
+    EXPECT_EQ(caller.force, Vec3(0, 0, 0));
+    EXPECT_EQ(rig.loop->status().ticks, 1200u);
+  }
+}
+
+TEST(Loop, DevicesOfOneThreadGoTogetherAndOthersAreExchangedWith) {
+  SimulationDef body = small_body();
+  body.tools.push_back(body.tools[0]);
+  int group = 0;
+  for (const bool together : {true, false}) {
+    Caller first(&group), second(together ? &group : nullptr);
+    first.sample.pose.position.y() = 0.01;
+    second.sample.pose.position.y() = 0.01;
+    LoopRig rig(
+        [&](LoopDef& def) {
+          def.driver = LoopDriver::automatic;
+          def.watchdog = false;
+          def.hands[0].device = &first;
+          def.hands.push_back(def.hands[0]);
+          def.hands[1].device = &second;
+          def.hands[1].holder = 1;
+          def.hands[1].workspace.pose.position.x() = 1;
+        },
+        body);
+    rig.loop->start();
+    EXPECT_EQ(second.servo.call != nullptr, !together);
+    for (int i = 0; i < 200; ++i) second.turn(), first.turn();
+    EXPECT_EQ(first.reads, 200u);
+    EXPECT_EQ(second.reads, 200u);
+    EXPECT_EQ(rig.loop->status().hands[1].time, 0.199);
+  }
+}
+
+TEST(Loop, TheDevicesRateMustBeTheTicks) {
+  Caller caller;
+  caller.info().rate = 500;
+  const auto try_with = [&](LoopDriver driver) {
+    LoopRig rig([&](LoopDef& def) {
+      def.driver = driver;
+      def.hands[0].device = &caller;
+    });
+  };
+  try {
+    try_with(LoopDriver::automatic);
+    ADD_FAILURE() << "time would run at half its speed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Code::out_of_range);
+    EXPECT_NE(std::string(error.what()).find("500 Hz"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(try_with(LoopDriver::host)) << "who polls has a time of their own";
+}
+
+TEST(Loop, WhatTheDriverTookStaysAway) {
+  LoopRig rig;
+  rig.let_in();
+  rig.move_to(-0.002);
+  EXPECT_GT(rig.device.force.y(), 0.01);
+  rig.device.sample.flags = sample_flag::kForceOff;
+  rig.tick();
+  EXPECT_EQ(rig.device.force, Vec3(0, 0, 0));
+  rig.device.sample.flags = 0;
+  rig.tick(1000);
+  EXPECT_EQ(rig.hand().fault, Fault::driver);
+  EXPECT_EQ(rig.device.force, Vec3(0, 0, 0)) << "until somebody asks";
+  rig.loop->reset_fault(0);
+  rig.move_to(0.002);
+  rig.tick(1000);
+  EXPECT_EQ(rig.hand().state, HandState::running);
+}
+
 TEST(Loop, WarnsOfACouplingThatTheDeviceCannotBear) {
   LoopRig quiet, loud([](LoopDef&def) { def.hands[0].coupling.stiffness = 20000; });
   EXPECT_TRUE(quiet.loop->warnings().empty());

@@ -44,4 +44,20 @@ class Puppet : public Device {
   double tick_;
 };
 
+/// One that calls, as the driver of a maker does: its thread is whoever calls turn().
+class Caller final : public Puppet {
+ public:
+  explicit Caller(const void* group = nullptr) {
+    info().servo_driven = true;
+    info().servo_group = group;
+    info().rate = 1000;
+  }
+  void start_servo(const ServoTick& tick) override { servo = tick; }
+  void stop_servo() noexcept override { servo = {}; }
+  void turn(int times = 1) {
+    for (int i = 0; i < times && servo.call; ++i) servo.call(servo.context);
+  }
+  ServoTick servo;
+};
+
 }  // namespace crumble

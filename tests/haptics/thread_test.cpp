@@ -144,6 +144,25 @@ TEST(Threads, TheDeviceDrives) {
   EXPECT_TRUE(loop.realtime().empty());
 }
 
+TEST(Threads, ADeviceThatStopsCallingIsToldAtOnceAndWhenItComesBack) {
+  Caller caller;
+  caller.sample.pose.position.y() = 0.002;
+  LoopRig rig([&](LoopDef& def) {
+    def.driver = LoopDriver::automatic;
+    def.hands[0].device = &caller;
+  });
+  rig.loop->start();
+  caller.turn(3);
+  EXPECT_TRUE(wait_for([&] { return rig.loop->status().hands[0].fault == Fault::stalled; }));
+  EXPECT_EQ(rig.loop->status().watchdog, 1u);
+  const std::uint64_t writes = caller.writes;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(caller.writes, writes) << "its calls belong to its own thread";
+  caller.turn();
+  EXPECT_EQ(rig.loop->status().hands[0].state, HandState::faulted);
+  EXPECT_EQ(caller.force, Vec3(0, 0, 0));
+}
+
 TEST(Threads, ALoopThatGoesAwayStops) {
   auto rig = std::make_unique<ThreadedRig>([](LoopDef&) {});
   rig->loop->start();

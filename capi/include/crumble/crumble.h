@@ -787,10 +787,14 @@ enum {
   CRUMBLE_DEVICE_NULL = 0,    /* a pose that never moves */
   CRUMBLE_DEVICE_PRESS = 1,   /* a scripted straight press */
   CRUMBLE_DEVICE_REPLAY = 2,  /* a trajectory from a file */
-  CRUMBLE_DEVICE_PHANTOM = 3, /* 3D Systems PHANToM / Touch: not in this build */
+  CRUMBLE_DEVICE_PHANTOM = 3, /* 3D Systems PHANToM / Touch through HDAPI, which is loaded when one is opened */
   CRUMBLE_DEVICE_CUSTOM = 4,  /* the host's own, by callbacks */
   CRUMBLE_DEVICE_PATH = 5,    /* scripted moves and turns */
-  CRUMBLE_DEVICE_HAND = 6     /* a simulated hand that holds a simulated device: the one that feels the force */
+  CRUMBLE_DEVICE_HAND = 6,    /* a simulated hand that holds a simulated device: the one that feels the force */
+  CRUMBLE_DEVICE_POKE = 7,    /* scripted pokes of least jerk, as a finger does them */
+  CRUMBLE_DEVICE_TREMOR = 8,  /* a hand that only trembles */
+  CRUMBLE_DEVICE_WANDER = 9,  /* a hand that goes from one random place to the next */
+  CRUMBLE_DEVICE_INVERSE3 = 10 /* Haply Inverse3 through the WebSocket of its local service */
 };
 
 /* What a device senses. */
@@ -805,7 +809,7 @@ enum {
 /* How a device runs. */
 enum {
   CRUMBLE_DEVICE_STEP_LOCKED = 1, /* read k is tick k, whatever the wall clock says */
-  CRUMBLE_DEVICE_SERVO_DRIVEN = 2 /* has a thread of its own that calls the tick: see CRUMBLE_DRIVER_DEVICE */
+  CRUMBLE_DEVICE_SERVO_DRIVEN = 2 /* has a thread of its own that calls the tick: see CRUMBLE_DRIVER_ */
 };
 
 /* What came of a read. */
@@ -820,7 +824,8 @@ enum {
   CRUMBLE_SAMPLE_RESAMPLED = 1,    /* interpolated between recorded rows, not recorded at this time */
   CRUMBLE_SAMPLE_FINISHED = 2,     /* with CRUMBLE_READ_FINISHED */
   CRUMBLE_SAMPLE_UNCALIBRATED = 4, /* the pose means nothing yet: a loop waits and gives no force */
-  CRUMBLE_SAMPLE_HELD = 8          /* not given by devices */
+  CRUMBLE_SAMPLE_HELD = 8,         /* not given by devices */
+  CRUMBLE_SAMPLE_FORCE_OFF = 16    /* the device's driver took the force away: see crumble_device_get_text */
 };
 
 /* Everything that belongs to one instant, device frame. */
@@ -858,6 +863,8 @@ typedef struct crumble_device_info {
   double workspace_high[3]; /* ... equal ones: everywhere */
   int32_t callback_error;   /* custom: what a callback answered when the device was lost; else 0 */
   uint32_t reserved;        /* 0 */
+  char driver[160];         /* for people, UTF-8: what stands between, its version, where it was found */
+  char serial[64];          /* the maker's number of the device; empty: it tells none */
 } crumble_device_info;
 
 /* Calls the loop for one tick; read and write are called from within. 0: do not call again. */
@@ -905,13 +912,20 @@ typedef struct crumble_motion_point {
   double turn[3]; /* path: unit axis times radians, from how it stood when it started, about its own origin */
 } crumble_motion_point;
 
+/* What time a replay goes by. */
+enum {
+  CRUMBLE_CLOCK_STEP_LOCKED = 0, /* read k gives the motion k ticks after replay_from */
+  CRUMBLE_CLOCK_REALTIME = 1,    /* a read gives the motion as long after replay_from as the first read is ago */
+  CRUMBLE_CLOCK_FAST = 2         /* a read gives the next row of the file, as it was recorded */
+};
+
 /* One struct for all kinds, so that a program changes nothing but `kind`; what another kind needs is not looked at. */
 typedef struct crumble_device_def {
   uint32_t struct_size;
   uint32_t kind;             /* CRUMBLE_DEVICE_; default null */
-  double tick;               /* all but custom: s from read to read; > 0; default 0.001 */
-  crumble_pose start;        /* null, press, path, hand: device frame; default the origin */
-  double press_direction[3]; /* any length but 0; default 0, -1, 0 */
+  double tick;               /* simulated kinds, replay: s from read to read; > 0; default 0.001 */
+  crumble_pose start;        /* null, press, path, hand, poke, tremor, wander: device frame; default the origin */
+  double press_direction[3]; /* press, poke: any length but 0; default 0, -1, 0 */
   double press_speed;        /* m/s; > 0; default 0.001 */
   double press_depth;        /* m; > 0; default 0.03 */
   double press_hold;         /* s that it then stays; >= 0; default 0 */
@@ -934,7 +948,51 @@ typedef struct crumble_device_def {
   uint32_t hand_delay;       /* ticks between a write and its force; [0, 64]; default 0 */
   uint32_t reserved;         /* keep 0 */
   const crumble_device_callbacks *callbacks; /* custom: the table, copied; default NULL */
+  uint32_t replay_clock;     /* CRUMBLE_CLOCK_; default step-locked */
+  uint32_t record_capacity;  /* any kind: samples that are kept, with the force written after each, for
+                                crumble_device_save_trajectory; at most 10000000; 0 (default): none */
+  const char *phantom_library; /* path of HDAPI; NULL (default): that in the environment variable CRUMBLE_HDAPI, else
+                                  where its installer puts it. A process has one */
+  const char *phantom_name;  /* as in the driver's configuration; NULL (default): the first device */
+  double phantom_rate;       /* Hz, [500, 8000]; default 1000. A driver that does not take it keeps its own */
+  double phantom_tip[3];     /* m, stylus frame, from where its axes meet, whose position the driver tells; default 0 */
+  uint32_t phantom_torque;   /* experimental. 1: torques too, where the device has six motors; default 0 */
+  uint32_t phantom_reset_encoders; /* 1: the arm is being held in its reset position: take it for that; default 0 */
+  uint32_t phantom_keep_enabled;   /* 1: not disabled when closed, by which some FireWire models crash; default 0 */
+  uint32_t poke_count;       /* >= 1; default 1 */
+  const char *phantom_license_vendor; /* these three for commercial programs, which the maker asks; NULL (default) */
+  const char *phantom_license_application;
+  const char *phantom_license_password;
+  double poke_depth;         /* m along press_direction; > 0; default 0.01 */
+  double poke_in;            /* s to go in; > 0; default 0.5 */
+  double poke_hold;          /* s still there; >= 0; default 0.5 */
+  double poke_out;           /* s to come back; > 0; default 0.5 */
+  double poke_rest;          /* s still between two; >= 0; default 0.5 */
+  uint64_t seed;             /* tremor, wander; default 0 */
+  double seconds;            /* tremor, wander: >= 0; 0 (default): without end */
+  double tremor_amplitude;   /* m, root mean square; > 0; default 0.0001 */
+  double tremor_low;         /* Hz; > 0; default 8 */
+  double tremor_high;        /* Hz; > tremor_low, at most half of 1 / tick; default 12 */
+  double wander_low[3];      /* m, from start: corners of the box, <= 0; default -0.02 each ... */
+  double wander_high[3];     /* ... and >= 0; default 0.02 each */
+  double wander_slowest;     /* m/s, mean speed of one move; > 0; default 0.02 */
+  double wander_fastest;     /* m/s; >= wander_slowest; default 0.1 */
+  double wander_max_pause;   /* s; >= 0; default 0.5 */
+  double wander_max_turn;    /* rad, [0, pi]; default 0 */
+  const char *inverse3_host; /* NULL (default): localhost */
+  const char *inverse3_device_id; /* as the service tells it; NULL (default): the first */
+  double inverse3_timeout;   /* s, to connect and to hear of a first state; > 0; default 2 */
+  uint32_t inverse3_port;    /* [1, 65535]; default 10001 */
+  uint32_t reserved2;        /* keep 0 */
 } crumble_device_def;
+
+/* What there is of hardware. This struct never changes its size. */
+typedef struct crumble_attached_device {
+  uint32_t kind;          /* CRUMBLE_DEVICE_ */
+  uint32_t can_be_opened; /* 1: nothing that is needed is missing; opening it is worth trying */
+  char name[112];         /* for people, UTF-8: what was found, and where */
+  char note[512];         /* what is missing, or how it is opened */
+} crumble_attached_device;
 
 /* Defaults. CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
 CRUMBLE_API crumble_result crumble_device_def_init(crumble_device_def *def, uint32_t struct_size);
@@ -954,8 +1012,26 @@ CRUMBLE_API crumble_result crumble_device_open(const crumble_device_def *def, cr
 CRUMBLE_API crumble_result crumble_device_destroy(crumble_device device);
 /* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
 CRUMBLE_API crumble_result crumble_device_get_info(crumble_device device, crumble_device_info *info);
+/* What is wrong with the device, for people: why it is lost or took the force away, how to calibrate it; "" when
+ * nothing is or it does not tell. The text lives until the device is destroyed. CRUMBLE_E_NULL. [any] */
+CRUMBLE_API crumble_result crumble_device_get_text(crumble_device device, const char **text);
+/* What was recorded of it so far, as a .ctraj file. CRUMBLE_E_STATE (record_capacity was 0), _EMPTY (no sample yet),
+ * _IO, _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_device_save_trajectory(crumble_device device, const char *path);
+/* Makes a .ctraj file of a text log that HAPI's DeviceLog wrote. `length_unit`: m per unit of its lengths, > 0; rows
+ * that repeat the time of the one before are left out. CRUMBLE_E_NULL, _INVALID_VALUE, _OUT_OF_RANGE, _IO, _EMPTY,
+ * _FORMAT, _UNSUPPORTED (a binary log), _BAD_POSE, _CORRUPT, _TOO_LARGE (the text names line and column),
+ * _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_trajectory_import_hapi(const char *log, double length_unit, const char *trajectory);
+/* Hardware on USB that the kinds of this build are for, and drivers without it: opens no device, but loads HDAPI
+ * (`library` as phantom_library). Writes at most `capacity` of them, and to `count` how many there are. CRUMBLE_E_NULL
+ * (count; devices where capacity is not 0), _BUFFER_TOO_SMALL (all that fit have been written), _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_device_find_attached(const char *library, crumble_attached_device *devices,
+                                                        uint32_t capacity, uint32_t *count);
 /* The next sample, for programs that do without a loop. Where sample->status is CRUMBLE_READ_NO_NEW_SAMPLE the rest is
- * as it was. CRUMBLE_E_DEVICE_LOST (for good: open it again), _UNINITIALIZED, _VERSION (struct_size). [one] */
+ * as it was. The first read or write of a servo-driven device starts its thread, which then exchanges with this one, and
+ * makes zero of a force that nobody renews for 20 ms. CRUMBLE_E_DEVICE_LOST (for good: open it again), _UNINITIALIZED,
+ * _VERSION (struct_size). [one] */
 CRUMBLE_API crumble_result crumble_device_read(crumble_device device, crumble_device_sample *sample);
 /* Force (3), N, and torque (3), N m, or NULL for none, on the hand, until the next write: past all safety stages, which
  * a loop has. CRUMBLE_E_INVALID_VALUE (not finite), _DEVICE_LOST. [one] */
@@ -979,11 +1055,12 @@ enum {
   CRUMBLE_COUPLING_PAPER = 2        /* the same, with the mean of its last five forces, Eq (7), held in between */
 };
 
-/* Who ticks. */
+/* Who ticks. A servo-driven device that does not drive is exchanged with, which makes its force a tick late. */
 enum {
   CRUMBLE_DRIVER_OWN_THREAD = 0, /* crumble_loop_start makes a thread */
   CRUMBLE_DRIVER_DEVICE = 1,     /* it hands the tick to the first device that is servo-driven */
-  CRUMBLE_DRIVER_HOST = 2        /* whoever calls crumble_loop_tick */
+  CRUMBLE_DRIVER_HOST = 2,       /* whoever calls crumble_loop_tick */
+  CRUMBLE_DRIVER_AUTOMATIC = 3   /* device if there is such a device, else own thread */
 };
 
 /* Hands of one loop, at most. */
@@ -997,9 +1074,9 @@ typedef struct crumble_loop_def {
                            (times its iterations) has to be tick * body_ticks */
   uint32_t body_thread; /* local model, paper: 1: the body has a thread of its own; 0 (default): every body_ticks-th
                            tick steps it */
-  uint32_t driver;      /* CRUMBLE_DRIVER_; default own thread */
-  uint32_t watchdog;    /* 1 (default): from start to stop a thread takes the force away when ticks stay out for 20 ms;
-                           not with CRUMBLE_DRIVER_DEVICE, whose own driver does */
+  uint32_t driver;      /* CRUMBLE_DRIVER_; default automatic */
+  uint32_t watchdog;    /* 1 (default): from start to stop a thread takes the force away when ticks stay out for 20 ms.
+                           Where a device drives, none but its driver can: the hand is faulted, no more */
   int32_t priority;     /* of SCHED_FIFO for our thread, [1, 99]; 0: as the system likes; default 80. Where it is not
                            allowed the loop runs without: crumble_loop_get_scheduling */
   int32_t processor;    /* for our thread to stay on, [0, 1023]; -1 (default): any */
@@ -1046,7 +1123,8 @@ enum {
   CRUMBLE_FAULT_SILENT = 5,      /* the device told nothing new for 20 ms */
   CRUMBLE_FAULT_DEVICE_LOST = 6, /* the device says that it is gone */
   CRUMBLE_FAULT_BODY = 7,        /* the body left the world: crumble_sim_reset */
-  CRUMBLE_FAULT_HALTED = 8       /* crumble_loop_halt */
+  CRUMBLE_FAULT_HALTED = 8,      /* crumble_loop_halt */
+  CRUMBLE_FAULT_DRIVER = 9       /* the device's own driver took the force away: crumble_device_get_text says why */
 };
 
 enum {
@@ -1141,8 +1219,8 @@ CRUMBLE_API crumble_result crumble_loop_apply_paper_preset(crumble_loop_def *def
  * CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (a field; no such tool; a tick that does not fit the simulation's tau),
  * _BAD_POSE (workspace), _UNINITIALIZED, _VERSION, _EMPTY (no hands), _TOO_LARGE (too many), _NULL, _BAD_HANDLE,
  * _STALE_HANDLE or _BUSY (also of a device: the text names the hand), _STATE (two hands with one tool or device;
- * body_thread with coupling direct), _UNSUPPORTED (no device drives), _NO_MEMORY. [one] in the simulation and the
- * devices */
+ * body_thread with coupling direct), _UNSUPPORTED (no device drives), _NO_MEMORY, _DEVICE_LOST (the thread of a
+ * servo-driven device does not start). [one] in the simulation and the devices */
 CRUMBLE_API crumble_result crumble_loop_create(crumble_sim sim, const crumble_loop_def *def,
                                                const crumble_hand_def *hands, uint32_t hand_count, crumble_loop *loop);
 /* Stops it first, and sends zero to every device once more. NULL is allowed and does nothing. CRUMBLE_E_STATE (from

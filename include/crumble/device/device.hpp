@@ -18,7 +18,7 @@ enum class DeviceKind : std::uint8_t {
   null = 0,       // a pose that never moves
   press = 1,      // a scripted straight press
   replay = 2,     // a trajectory from a file
-  phantom = 3,    // 3D Systems PHANToM / Touch through HDAPI: see available_devices() for whether this build has it
+  phantom = 3,    // 3D Systems PHANToM / Touch through HDAPI, which is loaded when one is opened
   custom = 4,     // a class of the user's own that implements Device
   path = 5,       // scripted moves and turns
   hand = 6,       // a simulated hand that holds a simulated device: closes the loop
@@ -47,6 +47,7 @@ inline constexpr std::uint32_t kResampled = 1u << 0;  // interpolated between re
 inline constexpr std::uint32_t kFinished = 1u << 1;   // the script or file is over; the last pose is held
 inline constexpr std::uint32_t kUncalibrated = 1u << 2;  // the pose means nothing yet
 inline constexpr std::uint32_t kHeld = 1u << 3;          // set by the loop: a glitch, the pose before it stands here
+inline constexpr std::uint32_t kForceOff = 1u << 4;      // the device's driver took the force away, see error_text()
 }  // namespace sample_flag
 
 /// A limit of 0 is one that the device does not tell.
@@ -68,6 +69,10 @@ struct DeviceInfo {
   double position_step = 0;                      // m, of its encoders at the tip
   Vec3 workspace_low = Vec3::Zero();             // m, device frame: corners of where it can be used;
   Vec3 workspace_high = Vec3::Zero();            // equal ones: everywhere
+  std::string driver = {};                       // for people: what stands between, its version, where it was found
+  std::string serial = {};                       // the maker's number of the device; empty: it tells none
+  const void* servo_group = nullptr;  // servo_driven devices with the same one, not null, share a thread: the
+                                      // tick of one may read and write the others
 };
 
 /// Everything that belongs to one instant.
@@ -115,7 +120,8 @@ class Device {
   virtual void start_servo(const ServoTick& tick);
   /// Returns when the last call has. Does nothing when none is going on.
   virtual void stop_servo() noexcept {}
-  /// What went wrong, for people, when read() has answered lost; static or kept text. Empty: it does not tell.
+  /// What is wrong, for people: after lost, with kForceOff or kUncalibrated. Static or kept text; any thread. Empty:
+  /// nothing is, or it does not tell.
   virtual const char* error_text() const noexcept { return ""; }
 
  protected:

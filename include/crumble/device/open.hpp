@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "crumble/device/hand.hpp"
+#include "crumble/device/inverse3.hpp"
+#include "crumble/device/phantom.hpp"
 #include "crumble/device/poke.hpp"
 #include "crumble/device/replay.hpp"
 #include "crumble/device/scripted.hpp"
@@ -17,16 +19,18 @@ namespace crumble {
 
 struct DeviceDef {
   DeviceKind kind = DeviceKind::null;
-  double tick = 1e-3;           // s, > 0: period of the step-locked kinds
-  Pose rest = {};               // kind null
-  PressOptions press = {};      // kind press
-  PathOptions path = {};        // kind path
-  HandOptions hand = {};        // kind hand
-  PokeOptions poke = {};        // kind poke
-  TremorOptions tremor = {};    // kind tremor
-  WanderOptions wander = {};    // kind wander
-  ReplayOptions replay = {};    // kind replay
-  std::string trajectory = {};  // kind replay: path of a .ctraj file
+  double tick = 1e-3;             // s, > 0: period of the step-locked kinds
+  Pose rest = {};                 // kind null
+  PressOptions press = {};        // kind press
+  PathOptions path = {};          // kind path
+  HandOptions hand = {};          // kind hand
+  PhantomOptions phantom = {};    // kind phantom
+  PokeOptions poke = {};          // kind poke
+  TremorOptions tremor = {};      // kind tremor
+  WanderOptions wander = {};      // kind wander
+  ReplayOptions replay = {};      // kind replay
+  std::string trajectory = {};    // kind replay: path of a .ctraj file
+  Inverse3Options inverse3 = {};  // kind inverse3
 };
 
 /// The kinds that open_device can open in this build.

@@ -9,9 +9,10 @@
 
 namespace crumble {
 
-/// A device around a device: passes everything through and keeps each new sample together with the force and torque
-/// written after it. All memory is taken at construction. A sample is dropped, and counted, when the capacity is used
-/// up or when its time does not come after the last one kept. The samples of a finished device are not kept.
+/// A device around a device: passes everything through and keeps each new sample together with the first force and
+/// torque written after it: a later one, as when a loop stops, is no answer to it. All memory is taken at construction.
+/// A sample is dropped, and counted, when the capacity is used up or when its time does not come after the last one
+/// kept. The samples of a finished device are not kept.
 class Recorder final : public Device {
  public:
   /// `capacity` in samples, 1 to kMaxTrajectoryRows (out_of_range; no_memory when it cannot be had).
@@ -34,7 +35,7 @@ class Recorder final : public Device {
   std::vector<TrajectoryRow> rows_;  // capacity long
   std::size_t size_ = 0;
   std::size_t dropped_ = 0;
-  bool last_kept_ = false;  // whether a write belongs to the last row
+  bool last_kept_ = false;  // whether the next write belongs to the last row
 };
 
 }  // namespace crumble

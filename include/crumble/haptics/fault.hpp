@@ -15,6 +15,7 @@ enum class Fault : std::uint8_t {
   device_lost = 6,  // the device says that it is gone
   body = 7,         // the body left the world: HapticLoop's simulation must be reset
   halted = 8,       // somebody called halt()
+  driver = 9,       // the device's own driver took the force away: Device::error_text() says why
 };
 
 /// "speed" and so on.

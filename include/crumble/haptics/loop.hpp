@@ -39,6 +39,7 @@ enum class LoopDriver : std::uint8_t {
   own_thread = 0,  // start() makes one
   device = 1,      // start() hands the tick to the first servo_driven device
   host = 2,        // whoever calls tick()
+  automatic = 3,   // device if there is such a device, else own_thread
 };
 
 struct ThreadOptions {
@@ -53,8 +54,9 @@ struct LoopDef {
   std::uint32_t body_ticks = 1;  // local_model, paper: ticks to a step of the body, [1, 100]. The simulation's step
                                  // has to take tick * body_ticks (direct: tick)
   bool body_thread = false;  // local_model, paper: the body has its own thread; else every body_ticks-th tick steps it
-  LoopDriver driver = LoopDriver::own_thread;
-  bool watchdog = true;  // a thread that takes the force away when ticks stay out for kStopAge; from start() to stop()
+  LoopDriver driver = LoopDriver::automatic;
+  bool watchdog = true;  // a thread that takes the force away when ticks stay out for kStopAge; from start() to stop().
+                         // Where the device drives, none but its own driver can: the hand is faulted, no more
   ThreadOptions thread;
   std::vector<HandDef> hands;  // one to kMaxHands
 };
@@ -65,7 +67,9 @@ void apply_paper_preset(LoopDef& def);
 class HapticLoop {
  public:
   /// `sim` and the devices are borrowed. Throws Error naming the field: null, empty, invalid_value, out_of_range,
-  /// bad_pose, too_large (more than kMaxHands), state (a holder that two hands move), unsupported (no device drives).
+  /// bad_pose, too_large (more than kMaxHands), state (a holder that two hands move), unsupported (no device drives);
+  /// and what start_servo throws. A servo_driven device that does not drive is run as a PolledDevice from here on, but
+  /// where its servo_group drives; that makes its force one tick late, and PassivityOptions::delay counts it.
   HapticLoop(Simulation& sim, LoopDef def);
   ~HapticLoop();  // stops
   HapticLoop(const HapticLoop&) = delete;

@@ -13,9 +13,11 @@
 
 namespace crumble {
 
+inline constexpr double kMostDelay = 64;  // ticks
+
 struct PassivityOptions {
   bool inject_damping = true;
-  double delay = 1;        // d, ticks from a sample to its force in the motors, the hold not counted; [0, 64]
+  double delay = 1;        // d, ticks from a sample to its force in the motors, the hold not counted; [0, kMostDelay]
   double max_damping = 0;  // N s/m that may be injected; 0: the device's max_damping, 5 where it tells none
   bool controller =
       false;  // Hannaford and Ryu, IEEE Trans. Robotics Autom. 18, 2002: brakes when the ledger is in debt
@@ -73,11 +75,9 @@ class EnergyObserver {
   const HandEnergy& energy() const noexcept { return energy_; }
 
  private:
-  static constexpr std::size_t kMostDelay = 64;
-
   HandEnergy energy_;
   Vec3 position_ = Vec3::Zero();
-  std::array<Sent, kMostDelay + 1> sent_{};  // the newest at newest_
+  std::array<Sent, static_cast<std::size_t>(kMostDelay) + 1> sent_{};  // the newest at newest_
   std::size_t newest_ = 0, delay_;
   double most_credit_;
   bool placed_ = false;

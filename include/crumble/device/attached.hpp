@@ -1,0 +1,27 @@
+// What a user could plug in, and what of it is there.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "crumble/device/device.hpp"
+
+namespace crumble {
+
+struct AttachedDevice {
+  DeviceKind kind = DeviceKind::phantom;
+  std::string name;            // for people: what was found, and where
+  bool can_be_opened = false;  // nothing that is needed is missing: open_device() is worth trying
+  std::string note;            // what is missing, or how it is opened
+};
+
+struct AttachedOptions {
+  std::string library = {};                  // as PhantomOptions::library
+  std::string usb = "/sys/bus/usb/devices";  // folder in which the system (Linux) lists what is on USB
+};
+
+/// Hardware on USB that the kinds of this build are for, and the drivers that they need. Opens no device; loads HDAPI
+/// if there is one. A device on Ethernet or FireWire is not seen: HDAPI cannot list, so there the driver alone is told.
+std::vector<AttachedDevice> attached_devices(const AttachedOptions& options = {});
+
+}  // namespace crumble

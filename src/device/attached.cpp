@@ -1,0 +1,53 @@
+#include "crumble/device/attached.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "crumble/device/phantom.hpp"
+
+namespace crumble {
+namespace {
+
+constexpr const char* kPhantomVendor = "2988";  // 3D Systems' Touch, with products 0302 and 0304
+
+// The first line of a file of the system's; empty if there is none.
+std::string line_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::vector<std::string> phantoms_on_usb(const std::string& folder) {
+  std::vector<std::string> found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    if (line_of(entry.path() / "idVendor") != kPhantomVendor) continue;
+    const std::string product = line_of(entry.path() / "product");
+    found.push_back("USB " + std::string(kPhantomVendor) + ":" + line_of(entry.path() / "idProduct") +
+                    (product.empty() ? "" : " " + product) + " at " + entry.path().filename().string());
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+}  // namespace
+
+std::vector<AttachedDevice> attached_devices(const AttachedOptions& options) {
+  std::vector<AttachedDevice> out;
+  const PhantomLibrary library = find_phantom_library(options.library);
+  const bool usable = !library.path.empty();
+  for (const std::string& name : phantoms_on_usb(options.usb)) {
+    out.push_back({DeviceKind::phantom, name, usable,
+                   usable ? "through " + library.version + ", " + library.path
+                          : "it is there, but its driver is not: " + library.reason});
+  }
+  if (out.empty() && usable) {
+    out.push_back({DeviceKind::phantom, library.version, true,
+                   "no such device on USB; one on Ethernet or FireWire can only be tried. Driver: " + library.path});
+  }
+  return out;
+}
+
+}  // namespace crumble
