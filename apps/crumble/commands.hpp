@@ -13,5 +13,9 @@ void add_bench(CLI::App& app);
 void add_patterns(CLI::App& app);
 void add_loop(CLI::App& app);
 void add_zwidth(CLI::App& app);
+void add_devices(CLI::App& app);
+void add_device_check(CLI::App& app);
+void add_record(CLI::App& app);
+void add_import(CLI::App& app);
 
 }  // namespace crumble::app

@@ -1,7 +1,9 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "loop_replay.hpp"
 #include "loop_report.hpp"
+#include "output.hpp"
 #include "runner/choice.hpp"
 
 namespace crumble::app {
@@ -14,7 +16,7 @@ struct LoopOptions {
   LoopSettings settings;
   int body_ticks = 1;
   std::optional<double> encoder;  // mm
-  bool no_virtual_coupling = false, no_damping = false, json = false;
+  bool no_virtual_coupling = false, no_damping = false, json = false, verify = false;
 };
 
 BodyCoupling parse_coupling(const std::string& name) {
@@ -33,11 +35,23 @@ LoopSettings settings_of(const LoopOptions& options) {
   settings.damping = !options.no_damping;
   if (options.encoder) {
     require_positive("--encoder", *options.encoder);
-    settings.encoder_step = *options.encoder * 1e-3;
+    settings.device.encoder_step = *options.encoder * 1e-3;
   }
   settings.record = !options.record.empty();
   check(settings);
   return settings;
+}
+
+// Exit code 1 when something differs.
+void verify(const LoopOptions& options, const LoopSettings& settings) {
+  constexpr std::string_view kReplay = "replay:";
+  if (!settings.device.name.starts_with(kReplay)) {
+    throw Error(Code::state, "--verify needs --device replay:FILE, which is '" + settings.device.name + "'");
+  }
+  const Trajectory trajectory = load_trajectory(settings.device.name.substr(kReplay.size()));
+  const LoopReplay replay = verify_loop(load_scene(options.scene, Preset::standard), settings, trajectory);
+  std::printf("%zu ticks run again: every force the same to the last bit, and %llu events, and the state %s\n",
+              replay.rows, static_cast<unsigned long long>(replay.events), hash_text(replay.state_hash).c_str());
 }
 
 void loop(const LoopOptions& options) {
@@ -45,9 +59,14 @@ void loop(const LoopOptions& options) {
   if (settings.record && std::filesystem::path(options.record).extension() != ".ctraj") {
     throw Error(Code::unsupported, "--record '" + options.record + "' must end in .ctraj");
   }
+  if (options.verify) return verify(options, settings);
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out);
-  const LoopRun run = run_loop(load_scene(options.scene, Preset::standard), settings);
+  LoopRun run = run_loop(load_scene(options.scene, Preset::standard), settings);
+  if (run.trajectory && !run.settings.body_thread) {
+    run.replay = replay_loop(load_scene(options.scene, Preset::standard), run.settings, *run.trajectory);
+    if (!run.replay->first_difference) add_loop_lines(run.scene, run.settings, *run.replay, *run.trajectory);
+  }
   if (folder) write_loop(run, *folder);
   if (run.trajectory) write_trajectory(options.record, *run.trajectory);
   if (folder) folder->commit();
@@ -61,17 +80,20 @@ void add_loop(CLI::App& app) {
   auto options = std::make_shared<LoopOptions>();
   LoopSettings& settings = options->settings;
   command->add_option("scene", options->scene, "JSON file or built-in scene")->required();
-  command->add_option("--device", settings.device, "hand, press:MM_PER_S or replay:FILE")->capture_default_str();
+  command->add_option("--device", settings.device.name, kDeviceHelp)->capture_default_str();
+  command->add_option("--library", settings.device.library, "HDAPI, for phantom; else where its installer puts it");
   command->add_option("--coupling", options->coupling, "direct, local_model or paper")->capture_default_str();
   command->add_option("--body-ticks", options->body_ticks, "Ticks to a step of the body")->capture_default_str();
   command->add_flag("--body-thread", settings.body_thread, "Step the body in a thread of its own");
-  command->add_option("--rate", settings.rate, "Ticks a second")->capture_default_str();
+  command->add_option("--rate", settings.device.rate, "Ticks a second")->capture_default_str();
   command->add_option("--seconds", settings.seconds, "Time; else until the device's motion is over");
   command->add_flag("--no-virtual-coupling", options->no_virtual_coupling, "The device carries the tool rigidly");
   command->add_flag("--no-damping", options->no_damping, "Inject no damping");
   command->add_flag("--controller", settings.controller, "Brake when the energy ledger is in debt");
   command->add_option("--encoder", options->encoder, "Step of the hand's encoders, mm; else none");
   command->add_option("--record", options->record, "File for the device's motion and forces, .ctraj");
+  command->add_flag("--verify", options->verify,
+                    "Run what replay:FILE recorded again, and compare force, events, state");
   command->add_option("--out", options->out, "Folder for loop.csv and loop.svg");
   command->add_flag("--json", options->json, "Print one JSON object instead of the report");
   command->callback([options] { loop(*options); });

@@ -32,11 +32,11 @@ Json settings_json(const LoopSettings& s) {
   return {{"coupling", to_string(s.coupling)},
           {"body_ticks", s.body_ticks},
           {"body_thread", s.body_thread},
-          {"rate_hz", s.rate},
+          {"rate_hz", s.device.rate},
           {"virtual_coupling", s.virtual_coupling},
           {"inject_damping", s.damping},
           {"controller", s.controller},
-          {"encoder_step_m", s.encoder_step}};
+          {"encoder_step_m", s.device.encoder_step}};
 }
 
 std::string times_line(const char* name, const TimePercentiles& t) {
@@ -63,6 +63,12 @@ std::string counters_text(const SafetyCounters& c) {
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
   }
   return text.empty() ? "nothing had to be done" : text;
+}
+
+std::string replay_text(const LoopReplay& r) {
+  std::string text = std::to_string(r.rows) + " ticks; run again, ";
+  if (r.first_difference) return text + "the force of tick " + std::to_string(*r.first_difference) + " is another one";
+  return text + "every force is the same to the last bit, with " + std::to_string(r.events) + " events";
 }
 
 std::string sample_table(const LoopRun& run) {
@@ -126,6 +132,10 @@ std::string to_json(const LoopRun& run) {
                {"fault", to_string(hand.fault)},
                {"fault_reason", hand.fault == Fault::none ? "" : reason(hand.fault)},
                {"warnings", run.warnings}});
+  if (run.replay) {
+    json["replay"] = {
+        {"rows", run.replay->rows}, {"identical", !run.replay->first_difference}, {"events", run.replay->events}};
+  }
   for (const auto& [name, count] : counters(hand.counters)) json["counters"][name] = count;
   return json.dump(1) + "\n";
 }
@@ -136,8 +146,9 @@ std::string to_report(const LoopRun& run) {
   std::string text;
   text += line("%s, %s, %g s\n\n", run.scene.c_str(), run.device.c_str(), run.seconds);
   text += "thread      " + (run.scheduling.empty() ? "as the system likes" : run.scheduling) + "\n";
-  text += line("ticks       %llu at %.1f Hz of %g, %llu deadlines missed; the watchdog came %llu times\n",
-               whole(status.ticks), run.times.rate, run.settings.rate, whole(status.missed), whole(status.watchdog));
+  text +=
+      line("ticks       %llu at %.1f Hz of %g, %llu deadlines missed; the watchdog came %llu times\n",
+           whole(status.ticks), run.times.rate, run.settings.device.rate, whole(status.missed), whole(status.watchdog));
   text += times_line("tick, wall", run.times.tick_wall) + times_line("tick, CPU", run.times.tick_cpu) +
           times_line("lateness", run.times.lateness);
   text += line("body        %s: %llu steps, %llu late answers, %llu springs cut\n", body_text(run.settings).c_str(),
@@ -149,6 +160,7 @@ std::string to_report(const LoopRun& run) {
                1e3 * hand.energy.controlled);
   text += "safety      " + counters_text(hand.counters) + "\n";
   text += "state       " + state_text(run) + "\n";
+  if (run.replay) text += "recorded    " + replay_text(*run.replay) + "\n";
   for (const std::string& warning : run.warnings) text += "warning: " + warning + "\n";
   return text;
 }

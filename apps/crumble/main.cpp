@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/device/open.hpp"
 #include "crumble/network/solver.hpp"
 #include "scenes/scene.hpp"
 
@@ -11,7 +12,9 @@ namespace {
 std::string version_text() {
   std::string text = "crumble " CRUMBLE_VERSION ", built by " CRUMBLE_COMPILER "\nprecision: float64 float32\nkernels:";
   for (const std::string& name : crumble::kernel_names()) text += " " + name;
-  text += "\nthreads: 1 to 64\ndevices: press replay hand\nscenes:";
+  text += "\nthreads: 1 to 64\ndevices:";
+  for (const crumble::DeviceKind kind : crumble::available_devices()) text += std::string(" ") + to_string(kind);
+  text += "\nscenes:";
   for (const std::string& name : crumble::scene_names()) text += " " + name;
   return text;
 }
@@ -30,6 +33,10 @@ int main(int argc, char** argv) {
   crumble::app::add_patterns(app);
   crumble::app::add_loop(app);
   crumble::app::add_zwidth(app);
+  crumble::app::add_devices(app);
+  crumble::app::add_device_check(app);
+  crumble::app::add_record(app);
+  crumble::app::add_import(app);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const crumble::Error& error) {

@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "crumble/haptics/loop.hpp"
+#include "named_device.hpp"
 #include "scenes/scene.hpp"
 
 namespace crumble::app {
 
 struct LoopSettings {
-  std::string device = "hand";  // hand, press:MM_PER_S, replay:FILE
+  DeviceChoice device;
   BodyCoupling coupling = BodyCoupling::direct;
   std::uint32_t body_ticks = 1;
   bool body_thread = false;
-  double rate = 1000;             // Hz
   std::optional<double> seconds;  // of the loop's time; else until the device's motion is over
   bool virtual_coupling = true, damping = true, controller = false;
-  double encoder_step = 0;  // m, of the hand's device
+  double delay = 0;  // ticks, of a device: see PassivityOptions
   bool record = false;
 };
 
@@ -30,6 +30,14 @@ struct LoopSample {
   std::uint32_t contacts = 0;
   std::uint64_t cuts = 0;  // springs cut so far
   HandState state = HandState::waiting;
+};
+
+/// A recorded loop run again.
+struct LoopReplay {
+  std::size_t rows = 0;
+  std::optional<std::size_t> first_difference;  // row whose force is another one; none: all have the same bits
+  std::uint64_t events = 0, event_hash = 0;     // all events of the run, in order
+  std::uint64_t state_hash = 0;                 // after the last row
 };
 
 struct LoopRun {
@@ -46,14 +54,18 @@ struct LoopRun {
   LoopTimes times;
   std::uint64_t cuts = 0;
   std::optional<Trajectory> trajectory;  // with LoopSettings::record
+  std::optional<LoopReplay> replay;      // likewise, where that can be
 };
 
 inline constexpr double kMostLoopSeconds = 600;
+
+/// The loop round `device`, whose origin lies at `start`.
+LoopDef loop_def(const LoopSettings& settings, const Pose& start, Device& device);
 
 /// Throws Error naming the option and the value.
 void check(const LoopSettings& settings);
 /// The scene's first tool by the device, whose origin lies where the tool starts; all others stay where they start.
 /// Takes as long as the loop does. Throws Error.
-LoopRun run_loop(Scene scene, const LoopSettings& settings);
+LoopRun run_loop(Scene scene, LoopSettings settings);
 
 }  // namespace crumble::app

@@ -144,7 +144,7 @@ TEST(LoopCommand, RefusesWhatItCannotDoAndNamesIt) {
   const struct {
     Arguments arguments, message;
   } refusals[] = {
-      {{"--device", "mouse"}, {"--device 'mouse'", "hand, press:MM_PER_S and replay:FILE"}},
+      {{"--device", "mouse"}, {"--device 'mouse'", "hand, press:MM_PER_S", "replay:FILE, phantom"}},
       {{"--device", "press:0"}, {"--device press:MM_PER_S must be positive, is 0"}},
       {{"--device", "press:fast"}, {"--device 'press:fast'"}},
       {{"--device", "press:0.001"}, {"--device 'press:0.001'", "--seconds"}},
