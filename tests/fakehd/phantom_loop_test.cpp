@@ -74,6 +74,9 @@ struct Injected {
   const char* kind;
   Fault fault;  // none: it must be borne
 };
+void PrintTo(const Injected& injected, std::ostream* out) {
+  *out << injected.kind;
+}
 class EveryTick : public PhantomLoopTest, public testing::WithParamInterface<Injected> {};
 
 TEST_P(EveryTick, ZeroForceInTimeAReasonAndBackOnRequest) {

@@ -246,6 +246,9 @@ struct DriverError {
   std::uint32_t flags;
   double temperature;
 };
+void PrintTo(const DriverError& error, std::ostream* out) {
+  *out << error.code;
+}
 class EveryError : public PhantomTest, public testing::WithParamInterface<DriverError> {};
 
 TEST_P(EveryError, IsHotLetGoOrLost) {
