@@ -45,6 +45,8 @@ void add_devices(CLI::App& app) {
   command->add_option("--library", options->attached.library, "HDAPI; else where its installer puts it");
   command->add_option("--usb", options->attached.usb, "Folder in which the system lists what is on USB")
       ->capture_default_str();
+  command->add_flag("--ask-services", options->attached.ask_services,
+                    "Open an Inverse3 for a moment, which gets zero force");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options] { list_devices(*options); });
 }

@@ -40,6 +40,7 @@ Json settings_json(const LoopSettings& s) {
 }
 
 std::string times_line(const char* name, const TimePercentiles& t) {
+  if (t.count == 0) return {};  // not our thread
   return line("%-12sp50 %.1f us, p99 %.1f us, p99.9 %.1f us, max %.1f us\n", name, 1e6 * t.p50, 1e6 * t.p99,
               1e6 * t.p99_9, 1e6 * t.max);
 }
@@ -54,6 +55,7 @@ std::string state_text(const LoopRun& run) {
   const HandStatus& hand = run.status.hands[0];
   std::string text = to_string(run.state);
   if (hand.fault != Fault::none) text += std::string(": ") + to_string(hand.fault) + ", " + reason(hand.fault);
+  if (!run.device_text.empty()) text += "; the device says: " + run.device_text;
   return text;
 }
 
@@ -63,6 +65,11 @@ std::string counters_text(const SafetyCounters& c) {
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
   }
   return text.empty() ? "nothing had to be done" : text;
+}
+
+std::string thread_text(const LoopRun& run) {
+  if (run.device_drove) return "the device's";
+  return run.scheduling.empty() ? "as the system likes" : run.scheduling;
 }
 
 std::string replay_text(const LoopReplay& r) {
@@ -131,6 +138,7 @@ std::string to_json(const LoopRun& run) {
                {"state", to_string(run.state)},
                {"fault", to_string(hand.fault)},
                {"fault_reason", hand.fault == Fault::none ? "" : reason(hand.fault)},
+               {"device_text", run.device_text},
                {"warnings", run.warnings}});
   if (run.replay) {
     json["replay"] = {
@@ -145,7 +153,7 @@ std::string to_report(const LoopRun& run) {
   const HandStatus& hand = status.hands[0];
   std::string text;
   text += line("%s, %s, %g s\n\n", run.scene.c_str(), run.device.c_str(), run.seconds);
-  text += "thread      " + (run.scheduling.empty() ? "as the system likes" : run.scheduling) + "\n";
+  text += "thread      " + thread_text(run) + "\n";
   text +=
       line("ticks       %llu at %.1f Hz of %g, %llu deadlines missed; the watchdog came %llu times\n",
            whole(status.ticks), run.times.rate, run.settings.device.rate, whole(status.missed), whole(status.watchdog));

@@ -148,7 +148,9 @@ LoopRun run_loop(Scene scene, LoopSettings settings) {
   Simulation sim(std::move(scene.def));
   HapticLoop loop(sim, loop_def(settings, scene.motions[0].start, *open.device));
   for (std::size_t i = 1; i < scene.motions.size(); ++i) loop.place(i, scene.motions[i].start);
+  out.device_drove = open.device->info().servo_driven;
   run(loop, sim, out);
+  out.device_text = open.device->error_text();
   if (recorder) out.trajectory = recorder->trajectory();
   return out;
 }

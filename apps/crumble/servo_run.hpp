@@ -42,6 +42,8 @@ struct LoopReplay {
 
 struct LoopRun {
   std::string scene, device, scheduling;
+  std::string device_text;    // what the device says is wrong with it
+  bool device_drove = false;  // its thread ticked
   LoopSettings settings;
   double seconds = 0;  // that were asked for
   std::vector<std::string> warnings;

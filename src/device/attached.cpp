@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "crumble/base/error.hpp"
 #include "crumble/device/phantom.hpp"
 
 namespace crumble {
@@ -32,6 +33,15 @@ std::vector<std::string> phantoms_on_usb(const std::string& folder) {
   return found;
 }
 
+AttachedDevice ask_inverse3(const Inverse3Options& options) {
+  const std::string place = options.host + ":" + std::to_string(options.port);
+  try {
+    return {DeviceKind::inverse3, open_inverse3(options)->info().name, true, "through its service at " + place};
+  } catch (const Error& error) {
+    return {DeviceKind::inverse3, "Haply Inverse3", false, error.what()};
+  }
+}
+
 }  // namespace
 
 std::vector<AttachedDevice> attached_devices(const AttachedOptions& options) {
@@ -47,6 +57,7 @@ std::vector<AttachedDevice> attached_devices(const AttachedOptions& options) {
     out.push_back({DeviceKind::phantom, library.version, true,
                    "no such device on USB; one on Ethernet or FireWire can only be tried. Driver: " + library.path});
   }
+  if (options.ask_services) out.push_back(ask_inverse3(options.inverse3));
   return out;
 }
 

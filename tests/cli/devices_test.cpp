@@ -44,6 +44,11 @@ TEST(DevicesCommand, ListsWhatIsPluggedInAndWhatItLacks) {
   EXPECT_FALSE(mentions(outcome.out, "1-5"));
   const Outcome none = crumble({"devices", "--usb", "/no/such/folder", "--library", "/no/such/libHD.so"});
   EXPECT_TRUE(mentions(none.out, "no hardware was found")) << none.out;
+  const json asked =
+      json_of({"devices", "--usb", "/no/such/folder", "--library", "/no/such/libHD.so", "--ask-services", "--json"});
+  ASSERT_EQ(asked.at("attached").size(), 1u);
+  EXPECT_EQ(asked.at("attached")[0].at("kind"), "inverse3");
+  EXPECT_FALSE(asked.at("attached")[0].at("note").get<std::string>().empty());
 }
 
 TEST(RecordCommand, RecordsAScriptWholeAndAnEndlessOneInPart) {
@@ -191,11 +196,22 @@ TEST(LoopCommand, TheDriverOfADeviceTicks) {
   EXPECT_EQ(run.at("fault"), "none");
   EXPECT_GT(run.at("peak_force_n"), 0.02);
   EXPECT_EQ(run.at("scheduling"), "") << "the thread is the driver's";
+  EXPECT_EQ(run.at("device_text"), "");
   EXPECT_TRUE(run.at("replay").at("identical").get<bool>());
   const Trajectory trajectory = read_trajectory(file);
   EXPECT_TRUE(mentions(std::string(trajectory.value_of("device")), "FAKE Touch"));
   EXPECT_EQ(trajectory.value_of("max_force_n"), "3.3");
   EXPECT_EQ(crumble({"loop", "tofu_cube", "--device", "replay:" + file, "--verify"}).code, 0);
+  {
+    const Script unplugged(
+        R"({"devices": [{"calibration": "none"}], "faults": [{"kind": "comm_error", "tick": 100}]})");
+    const Outcome lost =
+        crumble({"loop", "tofu_cube", "--device", "phantom", "--library", FAKEHD_LIBRARY, "--seconds", "0.5"});
+    EXPECT_EQ(lost.code, 0) << lost.err;
+    for (const char* part : {"thread      the device's", "faulted: device_lost", "the device says: HD_COMM_ERROR"}) {
+      EXPECT_TRUE(mentions(lost.out, part)) << lost.out;
+    }
+  }
   const Outcome slow = crumble(
       {"loop", "tofu_cube", "--device", "phantom", "--library", FAKEHD_LIBRARY, "--rate", "4000", "--seconds", "1"});
   EXPECT_TRUE(mentions(slow.err, "ticks at 1000 Hz")) << slow.err;
