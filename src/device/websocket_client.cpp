@@ -112,7 +112,12 @@ class WebSocketClient::Connection {
       context_.run();
       fail(where, "no address was found in time");
     }
-    if (error) fail(where, "no address is known (" + error.message() + ")");
+    if (error && host == "localhost") {  // a system without a table of names: RFC 6761 says what it means
+      const auto loopback = asio::ip::address_v4::loopback();
+      addresses = Tcp::resolver::results_type::create(Tcp::endpoint(loopback, port), host, std::to_string(port));
+    } else if (error) {
+      fail(where, "no address is known (" + error.message() + ")");
+    }
     busy = true;
     asio::async_connect(socket_.next_layer(), addresses, [&](SystemError e, const Tcp::endpoint&) {
       busy = false;
