@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using render::TemporaryFolder;
 
-// One run for all tests: it takes some seconds.
+// One run for all questions: it takes some seconds.
 struct QuickRun {
   QuickRun() {
     const TemporaryFolder folder;
@@ -53,7 +53,7 @@ std::ptrdiff_t passing(const json& presses) {
   return std::ranges::count_if(presses, [](const json& p) { return p.at("passes").get<bool>(); });
 }
 
-TEST(ZWidth, CountsWhatItLists) {
+void counts_what_it_lists() {
   const json all = quick_json();
   EXPECT_TRUE(all.at("quick").get<bool>());
   ASSERT_EQ(all.at("setups").size(), 9u);
@@ -72,7 +72,7 @@ TEST(ZWidth, CountsWhatItLists) {
   }
 }
 
-TEST(ZWidth, TheDefaultPassesAndBareDoesNot) {
+void default_passes_and_bare_does_not() {
   const json all = quick_json();
   for (const char* name : {"default", "default + encoder", "default + encoder + lateral", "local model"}) {
     EXPECT_EQ(setup_of(all, name).at("passed"), 6) << name;
@@ -84,7 +84,7 @@ TEST(ZWidth, TheDefaultPassesAndBareDoesNot) {
   }
 }
 
-TEST(ZWidth, CellsOfTheMapsAgreeWithTheirEdges) {
+void cells_of_the_maps_agree_with_their_edges() {
   const json all = quick_json();
   EXPECT_EQ(all.at("body_maps").size(), 8u);
   EXPECT_EQ(all.at("coupling_maps").size(), 4u);
@@ -107,7 +107,7 @@ TEST(ZWidth, CellsOfTheMapsAgreeWithTheirEdges) {
   }
 }
 
-TEST(ZWidth, WithinTheLimitsIsWhatPasses) {
+void within_the_limits_is_what_passes() {
   for (const json& map : quick_json().at("body_maps")) {
     for (const json& p : map.at("cells")) {
       const bool quiet = p.at("hold_cuts") == 0 && p.at("fault") == "none";
@@ -116,7 +116,7 @@ TEST(ZWidth, WithinTheLimitsIsWhatPasses) {
   }
 }
 
-TEST(ZWidth, WritesTheSameIntoFiles) {
+void writes_the_same_into_files() {
   const QuickRun& run = quick_run();
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.files, 4u);
@@ -129,6 +129,15 @@ TEST(ZWidth, WritesTheSameIntoFiles) {
     EXPECT_NE(svg->find("rate of the servo (Hz)"), std::string::npos);
   }
   EXPECT_EQ(run.err, "") << "progress is for terminals";
+}
+
+// One test, since each runs in a process of its own and would press again.
+TEST(ZWidth, AQuickRunIsWhatItSays) {
+  counts_what_it_lists();
+  default_passes_and_bare_does_not();
+  cells_of_the_maps_agree_with_their_edges();
+  within_the_limits_is_what_passes();
+  writes_the_same_into_files();
 }
 
 TEST(ZWidth, RefusesAPlaceThatCannotBeWrittenBeforeItStarts) {
