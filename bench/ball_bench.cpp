@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <vector>
 
 #include "contact/crumb_rig.hpp"
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -15,19 +15,19 @@
 namespace crumble {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
+using Ids = crumble::Vector<std::uint32_t>;
 
 // Each node goes to the nearest of `count` random nodes.
 Ids shards(const TetMesh& mesh, std::size_t count) {
   Random random(7);
-  std::vector<Vec3> seeds;
+  crumble::Vector<Vec3> seeds;
   while (seeds.size() < count) seeds.push_back(mesh.positions[random.below(mesh.node_count())]);
   Ids nearest;
   for (const Vec3& at : mesh.positions) {
     const auto nearer = [&](const Vec3& a, const Vec3& b) { return squared_norm(a - at) < squared_norm(b - at); };
     nearest.push_back(static_cast<std::uint32_t>(std::min_element(seeds.begin(), seeds.end(), nearer) - seeds.begin()));
   }
-  std::vector<std::uint8_t> intact;
+  crumble::Vector<std::uint8_t> intact;
   for (const auto& [a, b] : mesh.springs) intact.push_back(nearest[a] == nearest[b]);
   FragmentLabeler labeler(mesh.node_count(), mesh.springs);
   labeler.label(intact);
@@ -35,11 +35,11 @@ Ids shards(const TetMesh& mesh, std::size_t count) {
 }
 
 struct Times {
-  std::vector<double> all, with_search;
+  crumble::Vector<double> all, with_search;
   double pairs = 0;
 };
 
-double quantile(std::vector<double> values, double part) {
+double quantile(crumble::Vector<double> values, double part) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return 1e6 * values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
@@ -106,29 +106,29 @@ void crumbs_of_a_large_body(double cells) {
   Ids labels(mesh.node_count(), 0);
   Random random(5);
   const double top = cells * spacing;
-  std::vector<std::uint32_t> surface;
+  crumble::Vector<std::uint32_t> surface;
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
     if (mesh.positions[i].y() > top - 1e-6) surface.push_back(i);
   }
   for (std::uint32_t crumb = 1; crumb <= 50; ++crumb) labels[surface[random.below(surface.size())]] = crumb;
-  std::vector<std::uint8_t> intact, on_surface(mesh.node_count()), fixed(mesh.node_count());
+  crumble::Vector<std::uint8_t> intact, on_surface(mesh.node_count()), fixed(mesh.node_count());
   for (const auto& [a, b] : mesh.springs) intact.push_back(labels[a] == labels[b]);
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) on_surface[i] = mesh.kinds[i] != NodeKind::inside;
-  const std::vector<double> radii(mesh.node_count(), 0.0015), masses(mesh.node_count(), 5e-5),
+  const crumble::Vector<double> radii(mesh.node_count(), 0.0015), masses(mesh.node_count(), 5e-5),
       stiffnesses(mesh.node_count(), 30.0), sums(mesh.node_count(), 390.0);
   BallContacts balls({mesh.springs, radii, masses, stiffnesses, sums, on_surface, fixed, {0.5, 0.5}, 1e-3});
   Ids cuts;
   for (std::uint32_t s = 0; s < intact.size(); ++s) {
     if (!intact[s]) cuts.push_back(s);
   }
-  std::vector<BallFragment> fragments(51, {5e-5, false});
+  crumble::Vector<BallFragment> fragments(51, {5e-5, false});
   fragments[0].mass = 1;
   const double start = wall_seconds();
   balls.update(cuts, labels, fragments);
   const double update = wall_seconds() - start;
   VecArray at(balls.nodes().size()), speeds(balls.nodes().size());
   for (std::size_t i = 0; i < at.size(); ++i) at.set(i, mesh.positions[balls.nodes()[i]]);
-  std::vector<double> plain, searching;
+  crumble::Vector<double> plain, searching;
   double pairs = 0;
   for (int step = 0; step < 2000; ++step) {
     for (std::size_t i = 0; i < at.size(); ++i) {

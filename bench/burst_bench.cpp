@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <vector>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/sim/simulation.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -32,7 +32,7 @@ SimulationDef hanging_block(Precision precision) {
   return def;
 }
 
-double median(std::vector<double> values) {
+double median(crumble::Vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
@@ -53,9 +53,9 @@ double microseconds(Work&& work) {
 
 void report(Precision precision) {
   Simulation sim(hanging_block(precision));
-  std::vector<double> ordinary;
+  crumble::Vector<double> ordinary;
   long faults = 0;
-  std::vector<std::vector<std::uint8_t>> snapshots;  // before each step
+  crumble::Vector<crumble::Vector<std::uint8_t>> snapshots;  // before each step
   std::size_t worst = 0;
   std::uint32_t most = 0;
   for (std::size_t step = 0; step < kSteps; ++step) {
@@ -65,7 +65,7 @@ void report(Precision precision) {
     faults += page_faults() - faults_before;
     if (sim.info().new_cuts > most) most = sim.info().new_cuts, worst = step;
   }
-  std::vector<double> burst, labelling;
+  crumble::Vector<double> burst, labelling;
   FragmentLabeler labeler(sim.mesh().node_count(), sim.mesh().springs);
   for (int i = 0; i < kRepetitions; ++i) {
     const std::size_t first = worst > kWarmUp ? worst - kWarmUp : 0;

@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <ctime>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/fracture/surface.hpp"
@@ -20,9 +20,9 @@ const TetMesh& body() {
 }
 
 // `percent` of the springs cut, chosen at random.
-std::vector<std::uint8_t> intact_flags(std::int64_t percent) {
+Vector<std::uint8_t> intact_flags(std::int64_t percent) {
   Random random(7);
-  std::vector<std::uint8_t> intact(body().springs.size());
+  Vector<std::uint8_t> intact(body().springs.size());
   for (std::uint8_t& flag : intact) flag = random.uniform() * 100 >= static_cast<double>(percent);
   return intact;
 }
@@ -34,7 +34,7 @@ void name_body(benchmark::State& state) {
 
 // The argument is the percentage of cut springs.
 void label_fragments(benchmark::State& state) {
-  const std::vector<std::uint8_t> intact = intact_flags(state.range(0));
+  const Vector<std::uint8_t> intact = intact_flags(state.range(0));
   FragmentLabeler labeler(body().node_count(), body().springs);
   for (auto _ : state) benchmark::DoNotOptimize(labeler.label(intact));
   state.counters["fragments"] = static_cast<double>(labeler.count());
@@ -54,9 +54,9 @@ struct Scene {
   SurfaceInput now() const { return {positions, intact, labels, time}; }
 
   VecArray positions;
-  std::vector<std::uint8_t> intact;
+  Vector<std::uint8_t> intact;
   FragmentLabeler labeler;
-  std::vector<std::uint32_t> labels;
+  Vector<std::uint32_t> labels;
   double time = 0;
 };
 

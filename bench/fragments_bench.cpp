@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/fracture/fragment_tracker.hpp"
 #include "crumble/fracture/fragments.hpp"
@@ -15,7 +15,7 @@
 namespace crumble {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
+using Ids = Vector<std::uint32_t>;
 
 // 10 cubes along each edge: 1331 nodes, 7930 springs, 6000 tetrahedra.
 const TetMesh& small_body() {
@@ -98,7 +98,7 @@ BENCHMARK(burst_of_500)->Arg(15)->Arg(45)->Unit(benchmark::kMicrosecond);
 
 // The same state labelled afresh, for comparison.
 void labelling_after_burst(benchmark::State& state) {
-  std::vector<std::uint8_t> intact(small_body().springs.size(), 1);
+  Vector<std::uint8_t> intact(small_body().springs.size(), 1);
   for (const std::uint32_t spring : springs_near_plane(small_body(), -0.0015, 500)) intact[spring] = 0;
   FragmentLabeler labeler(small_body().node_count(), small_body().springs);
   for (auto _ : state) benchmark::DoNotOptimize(labeler.label(intact));
@@ -144,9 +144,9 @@ Ids block_labels(std::size_t count) {
 void measure(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const Ids labels = block_labels(count);
-  const std::vector<double> masses(labels.size(), 1e-5);
+  const Vector<double> masses(labels.size(), 1e-5);
   const VecArray positions(small_body().positions), velocities(labels.size());
-  std::vector<Fragment> fragments(count);
+  Vector<Fragment> fragments(count);
   for (auto _ : state) {
     measure_fragments(small_body(), labels, masses, positions, fragments, velocities);
     benchmark::ClobberMemory();

@@ -6,9 +6,9 @@
 // StepProfile.
 #include <algorithm>
 #include <cstdio>
-#include <vector>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "sim/heap_rig.hpp"
 
 namespace crumble {
@@ -17,7 +17,7 @@ namespace {
 constexpr int kSteps = 2000;
 constexpr std::size_t kFragments = 200;
 
-double quantile(std::vector<double>& values, double share) {
+double quantile(crumble::Vector<double>& values, double share) {
   const auto place = values.begin() + static_cast<long>(share * static_cast<double>(values.size()));
   std::nth_element(values.begin(), place, values.end());
   return 1e6 * *place;
@@ -26,7 +26,7 @@ double quantile(std::vector<double>& values, double share) {
 // Prints a row, beside `unit`, the median of another (0: this row's own). Returns the median, microseconds.
 template <class Step>
 double report(const char* name, HeapRig& rig, double unit, Step&& step) {
-  std::vector<double> cpu, find, project, touch, solve, cut;
+  crumble::Vector<double> cpu, find, project, touch, solve, cut;
   for (int s = 0; s < kSteps; ++s) {
     const double before = thread_cpu_seconds();
     step();

@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <memory>
 #include <thread>
-#include <vector>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/hand.hpp"
 #include "crumble/haptics/loop.hpp"
 #include "runner/clocks.hpp"
@@ -88,8 +88,8 @@ Cost measure(const Scene& scene, const Kind& kind, Reader reader, double seconds
   StatePublisher publisher(sim);
   loop.publish_to(publisher);
   const auto ticks = static_cast<std::size_t>(seconds / 1e-3);
-  std::vector<double> tick_cost(ticks), step_cost(ticks / kind.body_ticks);
-  std::vector<Pose> poses(ticks);
+  crumble::Vector<double> tick_cost(ticks), step_cost(ticks / kind.body_ticks);
+  crumble::Vector<Pose> poses(ticks);
   {
     const Beside beside(reader, loop, publisher);
     for (std::size_t k = 0; k < ticks; ++k) {
@@ -108,9 +108,9 @@ Cost measure(const Scene& scene, const Kind& kind, Reader reader, double seconds
   return {percentiles(std::move(tick_cost)), percentiles(std::move(step_cost)), sim.counters().cuts};
 }
 
-void report(const char* name, const std::vector<Cost>& costs) {
+void report(const char* name, const crumble::Vector<Cost>& costs) {
   const auto middle = [&](auto&& pick) {
-    std::vector<double> values;
+    crumble::Vector<double> values;
     for (const Cost& cost : costs) values.push_back(pick(cost));
     return median(values);
   };
@@ -123,7 +123,7 @@ void report(const char* name, const std::vector<Cost>& costs) {
 void run(double seconds) {
   const Scene scene = load_scene("tofu_cube", Preset::standard);
   for (const Kind& kind : kKinds) {
-    std::vector<Cost> alone, eager, stalled;
+    crumble::Vector<Cost> alone, eager, stalled;
     for (int turn = 0; turn < kTurns; ++turn) {
       alone.push_back(measure(scene, kind, Reader::none, seconds));
       eager.push_back(measure(scene, kind, Reader::eager, seconds));

@@ -3,12 +3,12 @@
 //   ./machine_bench
 #include <benchmark/benchmark.h>
 
-#include <vector>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "machine_bench.cpp"  // this file, once for each kind of vectors
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace crumble::bench {

@@ -4,6 +4,7 @@
 // share of all lanes holds a spring.
 #include <benchmark/benchmark.h>
 
+#include "crumble/base/memory.hpp"
 #include "runner/measure.hpp"
 
 namespace crumble::bench {
@@ -55,7 +56,7 @@ void add_cases(const BenchBody& body) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  std::vector<crumble::bench::BenchBody> bodies;
+  crumble::Vector<crumble::bench::BenchBody> bodies;
   for (const std::string& structure : crumble::bench::structure_names()) {
     bodies.push_back(crumble::bench::make_body(8000, structure, "paper"));
   }

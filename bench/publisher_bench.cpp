@@ -12,9 +12,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
-#include <vector>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/sim/publisher.hpp"
 #include "runner/body.hpp"
@@ -61,7 +61,7 @@ class Reader {
 
   SurfaceExtractor surface_;
   StatePublisher& publisher_;
-  std::vector<Event> events_;
+  crumble::Vector<Event> events_;
   std::uint64_t last_step_ = 0;
   const PublishedState* state_ = nullptr;
   std::atomic<Work> work_{kSleeps};
@@ -97,7 +97,7 @@ Press press_lattice(std::size_t springs) {
 }
 
 Percentiles time_stretch(const Press& press, Simulation& sim, StatePublisher& publisher) {
-  std::vector<double> times;
+  crumble::Vector<double> times;
   auto next = Clock::now();
   for (std::size_t i = 0; i < press.stretch; ++i) {
     const Pose pose = press.pose(sim.info().step);
@@ -111,11 +111,11 @@ Percentiles time_stretch(const Press& press, Simulation& sim, StatePublisher& pu
 }
 
 struct Arm {
-  std::vector<double> p50, p99;
+  crumble::Vector<double> p50, p99;
   void add(const Percentiles& p) { p50.push_back(p.p50), p99.push_back(p.p99); }
 };
 
-void print(const char* name, const Arm* arms, std::vector<double> Arm::*column) {
+void print(const char* name, const Arm* arms, crumble::Vector<double> Arm::*column) {
   const double sleeps = median(arms[kSleeps].*column), draws = median(arms[kDraws].*column);
   const double reads = median(arms[kReads].*column);
   std::printf("%s  sleeps %8.2f  draws %8.2f  reads %8.2f  reads/sleeps %.3f  reads/draws %.3f\n", name, sleeps, draws,
@@ -130,7 +130,7 @@ void run(const Press& press, double seconds) {
     const Pose pose = press.pose(sim.info().step);
     sim.step({&pose, 1});
   }
-  const std::vector<std::uint8_t> saved = sim.snapshot();
+  const crumble::Vector<std::uint8_t> saved = sim.snapshot();
   Arm arms[kWorks];
   const double end = wall_seconds() + seconds;
   for (int stretch = -kWorks; wall_seconds() < end || stretch <= 0 || stretch % kWorks != 0; ++stretch) {

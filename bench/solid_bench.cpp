@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
@@ -42,14 +42,14 @@ void ellipsoid_support(void*, const double direction[3], double point[3]) {
 enum class Place { far, near, inside };
 
 // Points of that kind in and about the solid's box, each next to the one before as a body's nodes are.
-std::vector<Vec3> points_of(const Solid& solid, Place place) {
+crumble::Vector<Vec3> points_of(const Solid& solid, Place place) {
   Vec3 low = solid->corners()[0], high = low;
   for (std::size_t i = 0; i < solid->corners().size(); ++i) {
     low = low.cwiseMin(solid->corners()[i]), high = high.cwiseMax(solid->corners()[i]);
   }
   const Vec3 margin = 0.1 * (high - low);
   Random random(1);
-  std::vector<Vec3> points;
+  crumble::Vector<Vec3> points;
   while (points.size() < 1000) {
     const Vec3 part(random.uniform(), random.uniform(), random.uniform());
     const Vec3 p = low - margin + part.cwiseProduct(high - low + 2 * margin);
@@ -61,8 +61,8 @@ std::vector<Vec3> points_of(const Solid& solid, Place place) {
 }
 
 void find_inside(benchmark::State& state, const Solid& solid, Place place) {
-  const std::vector<Vec3> points = points_of(solid, place);
-  std::vector<std::uint32_t> hints(points.size(), 0);
+  const crumble::Vector<Vec3> points = points_of(solid, place);
+  crumble::Vector<std::uint32_t> hints(points.size(), 0);
   SolidPoint nearest;
   for (auto _ : state) {
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -4,8 +4,7 @@
 // 1.15 with 8000 edges), and the mean wall time of each stage in microseconds, in the order of a step.
 #include <benchmark/benchmark.h>
 
-#include <vector>
-
+#include "crumble/base/memory.hpp"
 #include "scenes/scene.hpp"
 
 namespace crumble {
@@ -36,8 +35,8 @@ class Press {
 
  private:
   Simulation sim_;
-  std::vector<std::uint8_t> snapshot_;
-  std::vector<Pose> poses_;
+  Vector<std::uint8_t> snapshot_;
+  Vector<Pose> poses_;
   std::size_t next_ = 0;
 };
 

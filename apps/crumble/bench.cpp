@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "runner/choice.hpp"
 #include "runner/report.hpp"
 
@@ -11,11 +12,11 @@ namespace crumble::app {
 namespace {
 
 struct BenchOptions {
-  std::vector<std::size_t> springs{4000, 8000, 100'000};
-  std::vector<std::string> structures{"default"}, sticks{"paper"}, precisions{"float32"}, kernels{""};
-  std::vector<std::uint32_t> threads{1};
+  Vector<std::size_t> springs{4000, 8000, 100'000};
+  Vector<std::string> structures{"default"}, sticks{"paper"}, precisions{"float32"}, kernels{""};
+  Vector<std::uint32_t> threads{1};
   std::size_t steps = 2000;
-  std::vector<std::string> compare;
+  Vector<std::string> compare;
   std::string out;
   bool json = false, list_kernels = false;
 };
@@ -35,7 +36,7 @@ void check(const BenchOptions& options) {
   require_in_range("--steps", static_cast<double>(options.steps), 1, bench::kMostSteps);
 }
 
-void measure_settings(const BenchOptions& options, const bench::BenchBody& body, std::vector<bench::Row>& rows) {
+void measure_settings(const BenchOptions& options, const bench::BenchBody& body, Vector<bench::Row>& rows) {
   for (const std::string& precision : options.precisions) {
     for (const std::string& kernel : options.kernels) {
       for (const std::uint32_t threads : options.threads) {
@@ -49,8 +50,8 @@ void measure_settings(const BenchOptions& options, const bench::BenchBody& body,
   }
 }
 
-std::vector<bench::Row> measure_all(const BenchOptions& options) {
-  std::vector<bench::Row> rows;
+Vector<bench::Row> measure_all(const BenchOptions& options) {
+  Vector<bench::Row> rows;
   for (const std::size_t springs : options.springs) {
     for (const std::string& structure : options.structures) {
       for (const std::string& stick : options.sticks) {
@@ -62,7 +63,7 @@ std::vector<bench::Row> measure_all(const BenchOptions& options) {
   return rows;
 }
 
-std::string compare(const std::vector<std::string>& files) {
+std::string compare(const Vector<std::string>& files) {
   if (files.size() == 1) return bench::to_table(read_text(files[0]), files[0]);
   return bench::compare(files[0], files[1]);
 }

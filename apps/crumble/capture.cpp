@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble::app {
 namespace {
 
@@ -9,7 +11,7 @@ constexpr double kRefresh = 1.0 / 60;  // seconds between two looks of the camer
 
 }  // namespace
 
-void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, const std::vector<std::size_t>& steps,
+void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, const Vector<std::size_t>& steps,
            const std::function<void(std::size_t)>& take) {
   std::size_t step = 0;
   double refreshed = 0;
@@ -30,7 +32,7 @@ void rerun(const Recording& recording, Simulation& sim, SurfaceCamera& camera, c
   }
 }
 
-Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std::size_t>& steps) {
+Rerun rerun(const Recording& recording, StepSettings how, const Vector<std::size_t>& steps) {
   Rerun result;
   how.energy_audit = true;
   Simulation sim = recording.start(how);
@@ -43,8 +45,8 @@ Rerun rerun(const Recording& recording, StepSettings how, const std::vector<std:
   return result;
 }
 
-std::vector<std::size_t> phase_steps(const Experiment& experiment) {
-  const std::vector<Sample>& samples = experiment.samples;
+Vector<std::size_t> phase_steps(const Experiment& experiment) {
+  const Vector<Sample>& samples = experiment.samples;
   const std::size_t last = samples.size() - 1;
   if (!is_press(experiment.scene)) return {0, last / 3, 2 * last / 3, last};
   double deepest = 0;
@@ -60,7 +62,7 @@ std::vector<std::size_t> phase_steps(const Experiment& experiment) {
 render::RenderMesh tool_mesh(const Tool& tool, const Pose& hand) {
   const TriangleMesh& mesh = tool.shape->surface();
   render::RenderMesh drawn =
-      render::make_render_mesh(mesh, std::vector<render::Material>(mesh.triangles.size(), render::Material::wood), 40);
+      render::make_render_mesh(mesh, Vector<render::Material>(mesh.triangles.size(), render::Material::wood), 40);
   drawn.rest_positions = drawn.positions;
   const Frame frame(compose(hand, tool.offset));
   for (Vec3& p : drawn.positions) p = frame.to_scene(p);

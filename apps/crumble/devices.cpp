@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/attached.hpp"
 #include "crumble/device/open.hpp"
 
@@ -14,7 +15,7 @@ struct DevicesOptions {
 };
 
 void list_devices(const DevicesOptions& options) {
-  const std::vector<AttachedDevice> attached = attached_devices(options.attached);
+  const Vector<AttachedDevice> attached = attached_devices(options.attached);
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const AttachedDevice& device : attached) {

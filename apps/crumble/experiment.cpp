@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble::app {
@@ -73,8 +74,8 @@ class Movers {
   std::span<const Pose> poses() const { return poses_; }
 
  private:
-  std::vector<MotionDevice> movers_;
-  std::vector<Pose> poses_;
+  Vector<MotionDevice> movers_;
+  Vector<Pose> poses_;
 };
 
 double tool_depth(const Scene& scene, std::size_t tool, const Pose& pose) {
@@ -128,7 +129,8 @@ std::size_t count_inverted(const Simulation& sim) {
 }
 
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
-                          const DebrisOptions& debris, const std::function<void(double)>& progress) {
+                          const DebrisOptions& debris, LiveChanges changes,
+                          const std::function<void(double)>& progress) {
   if (seconds) require_positive("--seconds", *seconds);
   Movers movers(scene, device);
   Simulation sim(scene.def);
@@ -139,10 +141,11 @@ Experiment run_experiment(Scene scene, const std::string& device, std::optional<
   const double tick = experiment.scene.tick();
   const std::size_t steps = count_steps(seconds.value_or(movers.seconds()), tick);
   const auto debris_period = static_cast<std::size_t>(std::ceil(1 / (kDebrisRate * tick)));
-  std::vector<double> cpu;
+  Vector<double> cpu;
   for (std::size_t step = 0; step < steps; ++step) {
     experiment.resampled |= movers.read();
     if (debris.rule.max_nodes > 0 && step % debris_period == 0) clear_debris(experiment, debris);
+    changes.make_due(experiment.sim, experiment.recording);
     const double before = thread_cpu_seconds();
     const StepInfo& info = experiment.sim.step(movers.poses());
     cpu.push_back(1e6 * (thread_cpu_seconds() - before));

@@ -5,10 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 #include "crumble/sim/recording.hpp"
+#include "live_changes.hpp"
 #include "runner/clocks.hpp"
 #include "scenes/scene.hpp"
 
@@ -21,7 +22,7 @@ struct ToolSample {
 
 struct Sample {
   double time = 0;  // simulated seconds
-  std::vector<ToolSample> tools;
+  Vector<ToolSample> tools;
   std::uint64_t cuts = 0;
 };
 
@@ -40,17 +41,19 @@ struct Experiment {
   Recording recording;
   std::string device;  // of each tool and attachment, for people
   bool resampled = false;
-  std::vector<Sample> samples;
-  std::vector<Event> events;
-  bench::Percentiles cost;          // CPU time of the steps, microseconds; of all threads, divided by those at work
-  std::vector<double> peak_forces;  // on each tool, N
+  Vector<Sample> samples;
+  Vector<Event> events;
+  bench::Percentiles cost;     // CPU time of the steps, microseconds; of all threads, divided by those at work
+  Vector<double> peak_forces;  // on each tool, N
 };
 
 /// Moves what the scene moves, its first tool by `device`, "press:MM_PER_S" or "replay:FILE" (empty: what the scene
-/// says), until all motions are over or `seconds` have been simulated. The origin of FILE's motion lies where the tool
-/// starts. `progress` is told the share done. Throws Error, also when the body diverges.
+/// says), until all motions are over or `seconds` have been simulated, and makes `changes` on the way. The origin of
+/// FILE's motion lies where the tool starts. `progress` is told the share done. Throws Error, also when the body
+/// diverges.
 Experiment run_experiment(Scene scene, const std::string& device, std::optional<double> seconds,
-                          const DebrisOptions& debris, const std::function<void(double)>& progress);
+                          const DebrisOptions& debris, LiveChanges changes,
+                          const std::function<void(double)>& progress);
 
 /// Whether one tool goes straight down, or up and down by hand, so that its depth tells how far things have come.
 bool is_press(const Scene& scene);

@@ -5,6 +5,7 @@
 
 #include "capture.hpp"
 #include "commands.hpp"
+#include "crumble/base/memory.hpp"
 #include "grids.hpp"
 #include "output.hpp"
 #include "render/file_set.hpp"
@@ -78,7 +79,7 @@ std::size_t step_at(double time, double tick) {
   return static_cast<std::size_t>(std::max(std::floor(time / tick + 0.5), 1.0)) - 1;
 }
 
-std::vector<std::size_t> wanted_steps(const Recording& recording, double tick, const ExportOptions& options) {
+Vector<std::size_t> wanted_steps(const Recording& recording, double tick, const ExportOptions& options) {
   if (recording.step_count() == 0) throw Error(Code::empty, "recording '" + options.recording + "' has no step");
   const double last = static_cast<double>(recording.step_count()) * tick;
   if (options.every) {
@@ -86,7 +87,7 @@ std::vector<std::size_t> wanted_steps(const Recording& recording, double tick, c
   } else {
     require_in_range("--at", *options.at, 0, last);
   }
-  std::vector<std::size_t> steps;
+  Vector<std::size_t> steps;
   const auto count = options.every ? static_cast<std::size_t>(std::floor(last / *options.every + 1e-9)) + 1 : 1;
   for (std::size_t frame = 0; frame < count; ++frame) {
     const double time = options.every ? static_cast<double>(frame) * *options.every : *options.at;
@@ -121,7 +122,7 @@ class Series {
 
   path out_;
   render::FileSet& files_;
-  std::vector<std::pair<double, std::string>> frames_;
+  Vector<std::pair<double, std::string>> frames_;
 };
 
 void export_recording(const ExportOptions& options) {

@@ -1,5 +1,6 @@
 #include "grids.hpp"
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/masks.hpp"
 
 namespace crumble::app {
@@ -7,8 +8,8 @@ namespace {
 
 using render::VtkCell;
 using render::VtkGrid;
-using Numbers = std::vector<double>;
-using Ids = std::vector<std::int32_t>;
+using Numbers = Vector<double>;
+using Ids = Vector<std::int32_t>;
 
 constexpr std::int32_t kNone = -1;  // kNoFragment as a signed number
 
@@ -18,8 +19,8 @@ Ids to_ids(std::span<const std::uint32_t> numbers) {
   return ids;
 }
 
-std::vector<Vec3> to_points(VecView from) {
-  std::vector<Vec3> points;
+Vector<Vec3> to_points(VecView from) {
+  Vector<Vec3> points;
   for (std::size_t i = 0; i < from.size(); ++i) points.push_back(from[i]);
   return points;
 }
@@ -40,11 +41,11 @@ struct NumberedFragment {
   Fragment measured;
 };
 
-std::vector<NumberedFragment> measure(const Simulation& sim) {
-  std::vector<Fragment> measured(sim.fragments().count());
+Vector<NumberedFragment> measure(const Simulation& sim) {
+  Vector<Fragment> measured(sim.fragments().count());
   measure_fragments(sim.mesh(), sim.node_fragments(), sim.network().masses, sim.positions(), measured,
                     sim.velocities());
-  std::vector<NumberedFragment> there;
+  Vector<NumberedFragment> there;
   for (std::uint32_t id = 0; id < measured.size(); ++id) {
     if (measured[id].node_count > 0) there.push_back({id, sim.fragments().record(id), measured[id]});
   }
@@ -58,7 +59,7 @@ nlohmann::ordered_json to_json(const Vec3& v) {
 }  // namespace
 
 VtkGrid spring_grid(const Simulation& sim) {
-  const std::vector<Edge>& springs = sim.mesh().springs;
+  const Vector<Edge>& springs = sim.mesh().springs;
   VtkGrid grid;
   grid.time = sim.info().time;
   grid.points = to_points(sim.positions());
@@ -72,7 +73,7 @@ VtkGrid spring_grid(const Simulation& sim) {
     stretches.push_back(norm(grid.points[b] - grid.points[a]) / sim.network().rest_lengths[s]);
     fragments.push_back(common_fragment(sim, springs[s]));
   }
-  const std::vector<std::uint8_t> intact(sim.intact().begin(), sim.intact().end());
+  const Vector<std::uint8_t> intact(sim.intact().begin(), sim.intact().end());
   grid.cell_data = {{"spring", ids}, {"intact", intact}, {"stretch", stretches}, {"fragment", fragments}};
   grid.point_data = {{"velocity", to_points(sim.velocities())}, {"fragment", to_ids(sim.node_fragments())}};
   return grid;
@@ -83,7 +84,7 @@ VtkGrid body_grid(const TetMesh& mesh) {
   grid.points = mesh.positions;
   grid.cell = VtkCell::tetrahedron;
   grid.corners = render::to_corners(mesh.tetrahedra);
-  std::vector<std::uint8_t> kinds;
+  Vector<std::uint8_t> kinds;
   for (const NodeKind kind : mesh.kinds) kinds.push_back(static_cast<std::uint8_t>(kind));
   grid.point_data = {{"kind", kinds}};
   return grid;
@@ -96,7 +97,7 @@ VtkGrid body_grid(const Simulation& sim) {
   grid.points = to_points(sim.positions());
   grid.point_data.push_back({"rest", mesh.positions});
   grid.point_data.push_back({"fragment", to_ids(sim.node_fragments())});
-  std::vector<std::uint8_t> masks;
+  Vector<std::uint8_t> masks;
   Ids fragments;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     masks.push_back(cut_mask(mesh.tet_springs[t], sim.intact()));
@@ -112,7 +113,7 @@ VtkGrid fragment_grid(const Simulation& sim) {
   grid.cell = VtkCell::vertex;
   Ids ids, parents, nodes, tetrahedra;
   Numbers masses, volumes, born;
-  std::vector<Vec3> velocities;
+  Vector<Vec3> velocities;
   for (const NumberedFragment& fragment : measure(sim)) {
     grid.corners.push_back(static_cast<std::int32_t>(grid.points.size()));
     grid.points.push_back(fragment.measured.center);

@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "crumble/base/memory.hpp"
 #include "loop_replay.hpp"
 #include "loop_report.hpp"
 #include "output.hpp"
@@ -20,7 +21,7 @@ struct LoopOptions {
 };
 
 BodyCoupling parse_coupling(const std::string& name) {
-  std::vector<std::string> names;
+  Vector<std::string> names;
   for (const BodyCoupling coupling : kCouplings) names.emplace_back(to_string(coupling));
   bench::require_choice("--coupling", name, names);
   return kCouplings[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "line.hpp"
 #include "render/force_plot.hpp"
@@ -22,7 +23,7 @@ Json microseconds(const TimePercentiles& t) {
 }
 
 // In the order in which they are told.
-std::vector<std::pair<const char*, std::uint64_t>> counters(const SafetyCounters& c) {
+Vector<std::pair<const char*, std::uint64_t>> counters(const SafetyCounters& c) {
   return {{"held", c.held},     {"aged", c.aged},     {"outside", c.outside}, {"clamped", c.clamped},
           {"heated", c.heated}, {"slewed", c.slewed}, {"capped", c.capped},   {"unanswered", c.unanswered},
           {"faults", c.faults}};
@@ -175,7 +176,7 @@ std::string to_report(const LoopRun& run) {
 
 void write_loop(const LoopRun& run, const OutputFolder& folder) {
   write_text(folder.temporary() / "loop.csv", sample_table(run));
-  std::vector<render::ForceSample> samples;
+  Vector<render::ForceSample> samples;
   for (const LoopSample& s : run.samples) samples.push_back({s.time, 0, s.force, s.cuts});
   render::write_force_plot(samples, render::PlotAxis::time, run.scene + ", " + run.device + ": force on the hand",
                            folder.temporary() / "loop.svg");

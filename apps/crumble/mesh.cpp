@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "crumble/base/clock.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "crumble/tetmesh/vtk_file.hpp"
 #include "grids.hpp"
@@ -16,14 +17,14 @@ namespace {
 
 struct MeshOptions {
   std::string shape, out, lattice = "hcp", structure = "relaxed";
-  std::vector<double> sizes, offset;
+  Vector<double> sizes, offset;
   std::optional<double> spacing;
   std::optional<std::uint32_t> surface_nodes, inside_nodes;
   bool json = false;
 };
 
 // The sizes, named as in the usage; as many as there are names.
-std::vector<double> sizes(const MeshOptions& options, const std::vector<std::string>& names) {
+Vector<double> sizes(const MeshOptions& options, const Vector<std::string>& names) {
   if (options.sizes.size() != names.size()) {
     std::string usage;
     for (const std::string& name : names) usage += " " + name;
@@ -89,7 +90,7 @@ void write_mesh(const TetMesh& mesh, const std::filesystem::path& path) {
   render::write_mesh_file(surface, path);
 }
 
-double share(const std::vector<std::uint8_t>& flags) {
+double share(const Vector<std::uint8_t>& flags) {
   return static_cast<double>(std::ranges::count(flags, 1)) / static_cast<double>(flags.size());
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "render/force_plot.hpp"
 #include "render/mesh_file.hpp"
@@ -68,7 +69,7 @@ std::string event_table(const Experiment& experiment) {
 void write_plots(const Experiment& experiment, const std::filesystem::path& folder) {
   const bool over_time = !is_press(experiment.scene) || experiment.scene.motions[0].trajectory;
   for (std::size_t tool = 0; tool < experiment.scene.def.tools.size(); ++tool) {
-    std::vector<render::ForceSample> samples;
+    Vector<render::ForceSample> samples;
     for (const Sample& s : experiment.samples) {
       samples.push_back({s.time, s.tools[tool].depth, s.tools[tool].wrench.force, s.cuts});
     }
@@ -80,7 +81,7 @@ void write_plots(const Experiment& experiment, const std::filesystem::path& fold
 }
 
 // One camera for all phases, so that they can be compared: around all places where there is something of the body.
-render::Camera phase_camera(const std::vector<Capture>& captures, double aspect) {
+render::Camera phase_camera(const Vector<Capture>& captures, double aspect) {
   Vec3 low = captures[0].body.mesh.positions[0], high = low;
   for (const Capture& capture : captures) {
     for (const Vec3& p : capture.body.mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -99,8 +100,8 @@ double floor_height(const SimulationDef& def) {
 }
 
 // `bare`: without the tools, which hide much of what they have broken.
-void write_phases(const Experiment& experiment, const std::vector<Capture>& captures, bool bare,
-                  render::Renderer& renderer, const std::filesystem::path& path) {
+void write_phases(const Experiment& experiment, const Vector<Capture>& captures, bool bare, render::Renderer& renderer,
+                  const std::filesystem::path& path) {
   constexpr int kWidth = 640, kHeight = 480;
   render::Scene scene;
   scene.camera = phase_camera(captures, double{kWidth} / kHeight);
@@ -110,7 +111,7 @@ void write_phases(const Experiment& experiment, const std::vector<Capture>& capt
   for (std::size_t i = 0; i < 4; ++i) {
     const Capture& capture = captures[i];
     scene.meshes = {capture.body.mesh};
-    const std::vector<Tool>& tools = experiment.scene.def.tools;
+    const Vector<Tool>& tools = experiment.scene.def.tools;
     for (std::size_t t = 0; t < tools.size() && !bare; ++t)
       scene.meshes.push_back(tool_mesh(tools[t], capture.tools[t]));
     images[i] = renderer.draw(scene, kWidth, kHeight);

@@ -4,9 +4,9 @@
 
 #include <cerrno>
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::app {
 namespace {
@@ -48,7 +48,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::commit() {
-  std::vector<std::filesystem::path> names;
+  Vector<std::filesystem::path> names;
   for (const auto& file : std::filesystem::directory_iterator(temporary_)) names.push_back(file.path().filename());
   std::error_code error;
   for (const auto& name : names) {  // the one thing that stops a move within a folder which we have written to

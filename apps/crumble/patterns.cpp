@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/fracture/masks.hpp"
 #include "crumble/fracture/surface.hpp"
@@ -40,7 +41,7 @@ render::Camera camera() {
 }
 
 TetMesh make_drawn_tetrahedron() {
-  std::vector<Vec3> nodes{{0, 0, kSize}};
+  Vector<Vec3> nodes{{0, 0, kSize}};
   for (int k = 0; k < 3; ++k) {  // clockwise from the top
     const double angle = kPi / 2 - k * 2 * kPi / 3;
     nodes.push_back({kSize * cos_exact(angle), kSize * sin_exact(angle), 0});
@@ -94,12 +95,12 @@ render::RenderMesh rod(const Vec3& from, const Vec3& to) {
     mesh.triangles.push_back({0, a, a - 2});
     mesh.triangles.push_back({1, a - 1, a + 1});
   }
-  return make_render_mesh(mesh, std::vector(mesh.triangles.size(), render::Material::wood), 40);
+  return make_render_mesh(mesh, Vector<render::Material>(mesh.triangles.size(), render::Material::wood), 40);
 }
 
 // An intact spring from node to node; of a cut one what is left at both, half its rest length each, in dashes.
 void add_spring(const TetMesh& mesh, VecView nodes, std::size_t spring, bool is_cut,
-                std::vector<render::RenderMesh>& meshes) {
+                Vector<render::RenderMesh>& meshes) {
   constexpr double kDash = 1.0 / 7;
   const auto [a, b] = mesh.springs[spring];
   if (!is_cut) {
@@ -187,7 +188,7 @@ void draw_patterns(const PatternOptions& options) {
   if (out.extension() != ".png") throw Error(Code::unsupported, "--out '" + options.out + "' must end in .png");
   render::OffscreenContext context;
   render::Renderer renderer;
-  std::vector<render::Image> tiles;
+  Vector<render::Image> tiles;
   for (const unsigned mask : kCutClasses) tiles.push_back(draw_tile(renderer, {mode, mask}));
   tiles.push_back(draw_legend());
   render::write_png(render::tile(tiles, kColumns, 4, kPaper), out);

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "crumble/base/memory.hpp"
 #include "output.hpp"
 #include "render/text_curve.hpp"
 
@@ -110,7 +111,7 @@ std::string layout_line(const Simulation& sim) {
 
 std::string curve(const Experiment& experiment, std::size_t tool) {
   const bool over_time = !is_press(experiment.scene) || experiment.scene.motions[0].trajectory;
-  std::vector<double> x, y;
+  Vector<double> x, y;
   for (const Sample& s : experiment.samples) {
     x.push_back(over_time ? s.time : 1e3 * s.tools[tool].depth);
     y.push_back(norm(s.tools[tool].wrench.force));

@@ -1,8 +1,10 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <vector>
 
 #include "commands.hpp"
+#include "crumble/base/memory.hpp"
 #include "output.hpp"
 #include "runner/measure.hpp"
 #include "solver_options.hpp"
@@ -15,6 +17,7 @@ struct RunOptions {
   std::optional<double> seconds, tau;
   SolverOptions solver;
   std::uint32_t sleep_debris = 0, remove_debris = 0;
+  std::vector<std::string> changes;
   std::string out;
   bool json = false;
 };
@@ -43,6 +46,8 @@ void run(const RunOptions& options) {
     require_positive("--dt", *options.tau);
     require_in_range("--dt", *options.tau, 0, kMaxTimeStep);
   }
+  Vector<LiveChange> changes;
+  for (const std::string& text : options.changes) changes.push_back(parse_live_change(text));
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out);
   Scene scene = load_scene(options.scene, options.preset == "paper" ? Preset::paper : Preset::standard);
@@ -50,9 +55,9 @@ void run(const RunOptions& options) {
   if (precision) scene.def.step.precision = *precision;
   apply(options.solver, scene.def.step);
   const Experiment experiment =
-      run_experiment(std::move(scene), options.device, options.seconds, debris, show_progress);
-  const Rerun again = rerun(experiment.recording, experiment.scene.def.step,
-                            folder ? phase_steps(experiment) : std::vector<std::size_t>{});
+      run_experiment(std::move(scene), options.device, options.seconds, debris, LiveChanges(changes), show_progress);
+  const Rerun again =
+      rerun(experiment.recording, experiment.scene.def.step, folder ? phase_steps(experiment) : Vector<std::size_t>{});
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r      \r");
   if (folder) write_outputs(experiment, again, *folder);
   const std::string text = options.json ? to_json(experiment, again) : to_report(experiment, again, options.out);
@@ -77,6 +82,9 @@ void add_run(CLI::App& app) {
                       "Let fragments of up to so many nodes sleep once at rest");
   command->add_option("--remove-debris", options->remove_debris,
                       "Remove fragments of up to so many nodes once at rest");
+  command->add_option("--change", options->changes,
+                      "TIME:FIELD=VALUE, s and SI units: another stiffness, damping_ratio, length_limit, mass, "
+                      "spring_damping, gravity, cut_fade or friction of the tools from then on; may be repeated");
   command->add_option("--out", options->out,
                       "Folder for force.csv, events.csv, force.svg, phases*.png, surface_*.ply, experiment.crec");
   command->add_flag("--json", options->json, "Print one JSON object instead of the report");

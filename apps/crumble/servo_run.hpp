@@ -3,8 +3,8 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/haptics/loop.hpp"
 #include "named_device.hpp"
 #include "scenes/scene.hpp"
@@ -46,8 +46,8 @@ struct LoopRun {
   bool device_drove = false;  // its thread ticked
   LoopSettings settings;
   double seconds = 0;  // that were asked for
-  std::vector<std::string> warnings;
-  std::vector<LoopSample> samples;       // about one a millisecond
+  Vector<std::string> warnings;
+  Vector<LoopSample> samples;            // about one a millisecond
   double peak_force = 0;                 // N, of the samples; likewise
   double stiffness = 0;                  // N/m that the hand felt at most
   double damping = 0;                    // N s/m injected at most

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "line.hpp"
 #include "render/gnuplot.hpp"
@@ -29,7 +30,7 @@ set cbtics ('0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2) textcolor '#222222'
 )";
 
 // Where a stiffness lies between those of the rows, which stand at 0, 1, 2, ... whatever they are.
-double row_of(const std::vector<double>& stiffnesses, double stiffness) {
+double row_of(const Vector<double>& stiffnesses, double stiffness) {
   std::size_t above = 1;
   while (above + 1 < stiffnesses.size() && stiffnesses[above] < stiffness) ++above;
   const double low = std::log(stiffnesses[above - 1]), high = std::log(stiffnesses[above]);
@@ -65,7 +66,7 @@ std::string fails_block(const StabilityMap& map) {
 // The edge above the last row that is stable, as a stair, and the loop's own choice.
 std::string curves_block(const StabilityMap& map) {
   std::string stable = "$stable << EOD\n", chosen = "$chosen << EOD\n";
-  const std::vector<double> largest = map.largest_stable();
+  const Vector<double> largest = map.largest_stable();
   for (std::size_t r = 0; r < map.rates.size(); ++r) {
     const double edge = largest[r] > 0 ? row_of(map.stiffnesses, largest[r]) + 0.5 : -0.5;
     const auto x = static_cast<double>(r);
@@ -75,7 +76,7 @@ std::string curves_block(const StabilityMap& map) {
   return stable + "EOD\n" + chosen + "EOD\n";
 }
 
-std::string tics(const char* axis, const std::vector<double>& values) {
+std::string tics(const char* axis, const Vector<double>& values) {
   std::string text = std::string("set ") + axis + "tics (";
   for (std::size_t i = 0; i < values.size(); ++i) {
     text += (i > 0 ? ", '" : "'") + to_text(values[i]) + "' " + std::to_string(i);

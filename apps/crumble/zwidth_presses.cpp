@@ -7,6 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble::app {
 namespace {
 
@@ -17,9 +19,9 @@ constexpr double kCappedDamping = 4;      // N s/m: what real devices bear
 constexpr double kCoupledSprings = 100;   // N/m, of the body's springs in the map over the coupling
 constexpr double kQuickHold = 1;          // s; shorter than it takes a soft coupling to come to rest
 constexpr std::size_t kSampleStride = 9;  // of the 48 combinations, so that every choice comes up
-const std::vector<double> kRates{300, 350, 500, 1000, 2000, 4000};
-const std::vector<double> kBodyStiffnesses{10, 30, 100, 300, 1000};
-const std::vector<double> kCouplingStiffnesses{100, 200, 500, 1000, 2000, 5000};
+const Vector<double> kRates{300, 350, 500, 1000, 2000, 4000};
+const Vector<double> kBodyStiffnesses{10, 30, 100, 300, 1000};
+const Vector<double> kCouplingStiffnesses{100, 200, 500, 1000, 2000, 5000};
 
 Setup named(Setup setup, const std::string& name) {
   setup.name = name;
@@ -50,7 +52,7 @@ Setup local_model() {
   return setup;
 }
 
-std::vector<Setup> compared_setups() {
+Vector<Setup> compared_setups() {
   const Setup plain = default_setup(), moving = to_the_sides(with_encoder(plain));
   return {plain,          with_encoder(plain),    moving,       capped(moving), local_model(),
           damping_only(), capped(damping_only()), bare_setup(), paper_setup()};
@@ -64,9 +66,9 @@ Setup fitted(Setup setup, const Case& what) {
   return setup;
 }
 
-std::vector<SetupPresses> plan_combinations(bool quick) {
-  const std::vector<Case> cases = all_cases();
-  std::vector<SetupPresses> all;
+Vector<SetupPresses> plan_combinations(bool quick) {
+  const Vector<Case> cases = all_cases();
+  Vector<SetupPresses> all;
   for (const Setup& setup : compared_setups()) {
     SetupPresses row{setup.name, {}};
     for (std::size_t i = 0; i < cases.size(); i += quick ? kSampleStride : 1) {
@@ -78,8 +80,8 @@ std::vector<SetupPresses> plan_combinations(bool quick) {
   return all;
 }
 
-std::vector<double> sample(const std::vector<double>& values, bool quick) {
-  return quick ? std::vector{values[0], values[2], values[3]} : values;
+Vector<double> sample(const Vector<double>& values, bool quick) {
+  return quick ? Vector<double>{values[0], values[2], values[3]} : values;
 }
 
 std::string map_title(const Setup& setup, const Grip& grip) {
@@ -90,7 +92,7 @@ std::string map_title(const Setup& setup, const Grip& grip) {
 
 using Plan = std::function<Press(double stiffness, double rate)>;
 
-StabilityMap plan_map(const std::string& title, const std::vector<double>& stiffnesses, bool quick, const Plan& plan) {
+StabilityMap plan_map(const std::string& title, const Vector<double>& stiffnesses, bool quick, const Plan& plan) {
   StabilityMap map{title, sample(stiffnesses, quick), sample(kRates, quick), {}, {}};
   for (const double stiffness : map.stiffnesses) {
     for (const double rate : map.rates) {
@@ -101,8 +103,8 @@ StabilityMap plan_map(const std::string& title, const std::vector<double>& stiff
   return map;
 }
 
-std::vector<StabilityMap> plan_body_maps(bool quick) {
-  std::vector<StabilityMap> maps;
+Vector<StabilityMap> plan_body_maps(bool quick) {
+  Vector<StabilityMap> maps;
   for (const Setup& setup : {with_encoder(default_setup()), damping_only(), bare_setup(), paper_setup()}) {
     for (const Grip& grip : {kBare, kLoose}) {
       maps.push_back(plan_map(map_title(setup, grip), kBodyStiffnesses, quick, [&](double stiffness, double rate) {
@@ -113,8 +115,8 @@ std::vector<StabilityMap> plan_body_maps(bool quick) {
   return maps;
 }
 
-std::vector<StabilityMap> plan_coupling_maps(bool quick) {
-  std::vector<StabilityMap> maps;
+Vector<StabilityMap> plan_coupling_maps(bool quick) {
+  Vector<StabilityMap> maps;
   for (const Grip& grip : {kBare, kLoose}) {
     for (const std::uint32_t delay : {0u, 1u}) {
       Setup setup = with_encoder(default_setup());
@@ -130,9 +132,9 @@ std::vector<StabilityMap> plan_coupling_maps(bool quick) {
   return maps;
 }
 
-std::vector<Press*> all_presses(ZWidth& zwidth) {
-  std::vector<Press*> all;
-  const auto add = [&](std::vector<Press>& presses) {
+Vector<Press*> all_presses(ZWidth& zwidth) {
+  Vector<Press*> all;
+  const auto add = [&](Vector<Press>& presses) {
     for (Press& p : presses) all.push_back(&p);
   };
   for (SetupPresses& row : zwidth.setups) add(row.presses);
@@ -142,7 +144,7 @@ std::vector<Press*> all_presses(ZWidth& zwidth) {
 }
 
 // Each thread takes the next that nobody has taken.
-void press_all(const std::vector<Press*>& presses, const std::function<void(double)>& progress) {
+void press_all(const Vector<Press*>& presses, const std::function<void(double)>& progress) {
   std::atomic<std::size_t> next{0};
   std::size_t done = 0;
   std::exception_ptr failure;
@@ -161,7 +163,7 @@ void press_all(const std::vector<Press*>& presses, const std::function<void(doub
     }
   };
   {
-    std::vector<std::jthread> threads;
+    Vector<std::jthread> threads;
     for (unsigned n = std::max(1u, std::thread::hardware_concurrency()); n > 0; --n) threads.emplace_back(work);
   }
   if (failure) std::rethrow_exception(failure);
@@ -169,8 +171,8 @@ void press_all(const std::vector<Press*>& presses, const std::function<void(doub
 
 }  // namespace
 
-std::vector<double> StabilityMap::largest_stable() const {
-  std::vector<double> largest(rates.size(), 0);
+Vector<double> StabilityMap::largest_stable() const {
+  Vector<double> largest(rates.size(), 0);
   for (std::size_t rate = 0; rate < rates.size(); ++rate) {
     for (std::size_t k = 0; k < stiffnesses.size() && at(k, rate).passes(); ++k) largest[rate] = stiffnesses[k];
   }

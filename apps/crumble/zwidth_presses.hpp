@@ -3,9 +3,9 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "closed_loop/closed_loop.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::app {
 
@@ -20,26 +20,26 @@ struct Press {
 /// One setup under all combinations.
 struct SetupPresses {
   std::string name;
-  std::vector<Press> presses;
+  Vector<Press> presses;
 };
 
 /// Presses over a stiffness and the rate of the servo.
 struct StabilityMap {
   std::string title;
-  std::vector<double> stiffnesses, rates;  // N/m, Hz
-  std::vector<Press> presses;              // by stiffness, then rate
-  std::vector<double> chosen;              // N/m by rate: what the loop would take for the coupling; may be empty
+  Vector<double> stiffnesses, rates;  // N/m, Hz
+  Vector<Press> presses;              // by stiffness, then rate
+  Vector<double> chosen;              // N/m by rate: what the loop would take for the coupling; may be empty
 
   const Press& at(std::size_t stiffness, std::size_t rate) const { return presses[stiffness * rates.size() + rate]; }
   /// The greatest stiffness up to which all pass, at each rate; 0 where the least fails.
-  std::vector<double> largest_stable() const;
+  Vector<double> largest_stable() const;
 };
 
 struct ZWidth {
   bool quick = false;
-  std::vector<SetupPresses> setups;
-  std::vector<StabilityMap> body;      // over the stiffness of the body's springs; a row for each setup
-  std::vector<StabilityMap> coupling;  // over that of the coupling
+  Vector<SetupPresses> setups;
+  Vector<StabilityMap> body;      // over the stiffness of the body's springs; a row for each setup
+  Vector<StabilityMap> coupling;  // over that of the coupling
 };
 
 inline constexpr std::size_t kMapColumns = 2;  // `body` and `coupling` lie in rows of so many

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "line.hpp"
 
@@ -17,7 +18,7 @@ struct Summary {
   double span = 0, speed = 0;          // m, m/s, in the hold, the greatest
 };
 
-Summary summarize(const std::vector<Press>& presses) {
+Summary summarize(const Vector<Press>& presses) {
   Summary s;
   for (const Press& p : presses) {
     const bool passes = p.passes();
@@ -63,7 +64,7 @@ Json press_json(const Press& p) {
   return json;
 }
 
-Json presses_json(const std::vector<Press>& presses) {
+Json presses_json(const Vector<Press>& presses) {
   Json list = Json::array();
   for (const Press& p : presses) list.push_back(press_json(p));
   return list;
@@ -81,7 +82,7 @@ Json setup_json(const SetupPresses& row) {
           {"combinations", presses_json(row.presses)}};
 }
 
-Json maps_json(const std::vector<StabilityMap>& maps) {
+Json maps_json(const Vector<StabilityMap>& maps) {
   Json list = Json::array();
   for (const StabilityMap& map : maps) {
     Json json{{"title", map.title}, {"stiffnesses_n_m", map.stiffnesses}, {"rates_hz", map.rates}};

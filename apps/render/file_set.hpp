@@ -3,7 +3,8 @@
 
 #include <filesystem>
 #include <string_view>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble::render {
 
@@ -23,7 +24,7 @@ class FileSet {
   void commit();
 
  private:
-  std::vector<std::filesystem::path> files_, folders_;
+  Vector<std::filesystem::path> files_, folders_;
 };
 
 }  // namespace crumble::render

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <vector>
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "render/gnuplot.hpp"
 
@@ -35,8 +35,8 @@ std::string data_block(const std::string& name, std::span<const ForceSample> sam
     const auto run = samples.subspan(first, std::min(per_run, samples.size() - first));
     const auto [least, greatest] = std::minmax_element(
         run.begin(), run.end(), [&](const ForceSample& a, const ForceSample& b) { return y(a) < y(b); });
-    std::vector<std::size_t> kept = {0, static_cast<std::size_t>(least - run.begin()),
-                                     static_cast<std::size_t>(greatest - run.begin())};
+    Vector<std::size_t> kept = {0, static_cast<std::size_t>(least - run.begin()),
+                                static_cast<std::size_t>(greatest - run.begin())};
     if (first + run.size() == samples.size()) kept.push_back(run.size() - 1);
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());

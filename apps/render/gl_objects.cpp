@@ -1,9 +1,9 @@
 #include "render/gl_objects.hpp"
 
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::render {
 namespace {
@@ -61,7 +61,7 @@ Framebuffer make_framebuffer(std::initializer_list<GLuint> colours, GLuint depth
   glGenFramebuffers(1, &name);
   Framebuffer framebuffer(name);
   glBindFramebuffer(GL_FRAMEBUFFER, name);
-  std::vector<GLenum> targets;
+  Vector<GLenum> targets;
   for (const GLuint colour : colours) {
     targets.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + targets.size()));
     glFramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, colour, 0);

@@ -7,14 +7,16 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/mesh_formats.hpp"
 
 namespace crumble::render {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
+using Indices = Vector<std::uint32_t>;
 
 // The number of an accessor of `count` things of `type` in the model's one buffer; they have `size` bytes in all.
 int add_accessor(tinygltf::Model& model, const void* data, std::size_t size, std::size_t count, int type,
@@ -37,13 +39,13 @@ int add_accessor(tinygltf::Model& model, const void* data, std::size_t size, std
   return static_cast<int>(model.accessors.size()) - 1;
 }
 
-int add_vectors(tinygltf::Model& model, const std::vector<Eigen::Vector3f>& values) {
+int add_vectors(tinygltf::Model& model, const Vector<Eigen::Vector3f>& values) {
   return add_accessor(model, values.data(), values.size() * sizeof(Eigen::Vector3f), values.size(), TINYGLTF_TYPE_VEC3,
                       TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
 }
 
 // glTF wants the bounds of positions, as the float32 numbers of the file.
-void add_bounds(tinygltf::Accessor& accessor, const std::vector<Eigen::Vector3f>& values) {
+void add_bounds(tinygltf::Accessor& accessor, const Vector<Eigen::Vector3f>& values) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
   Eigen::Vector3f lower = Eigen::Vector3f::Constant(kFar), upper = -lower;
   for (const Eigen::Vector3f& v : values) lower = lower.cwiseMin(v), upper = upper.cwiseMax(v);
@@ -62,13 +64,13 @@ class Vertices {
     for (auto& [key, number] : numbers_) number = next++;
   }
   std::uint32_t number(std::uint32_t triangle, std::size_t corner) const { return numbers_.at(key(triangle, corner)); }
-  std::vector<Eigen::Vector3f> pick(const std::vector<Vec3>& values) const {
-    std::vector<Eigen::Vector3f> picked;
+  Vector<Eigen::Vector3f> pick(const Vector<Vec3>& values) const {
+    Vector<Eigen::Vector3f> picked;
     for (const auto& [key, number] : numbers_) picked.push_back(values[key.first].cast<float>());
     return picked;
   }
-  std::vector<Eigen::Vector3f> normals() const {
-    std::vector<Eigen::Vector3f> picked;
+  Vector<Eigen::Vector3f> normals() const {
+    Vector<Eigen::Vector3f> picked;
     for (const auto& [key, number] : numbers_) picked.emplace_back(key.second.data());
     return picked;
   }

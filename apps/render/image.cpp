@@ -8,6 +8,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::render {
 namespace {
@@ -20,16 +21,16 @@ struct TextRectangle {
   int left, top, right, bottom;
 };
 
-std::vector<TextRectangle> text_rectangles(std::string text) {
+Vector<TextRectangle> text_rectangles(std::string text) {
   struct Corner {
     float x, y, z;
     std::uint8_t colour[4];
   };
-  std::vector<Corner> corners(4 * 64 * (text.size() + 1));
+  Vector<Corner> corners(4 * 64 * (text.size() + 1));
   const int count = stb_easy_font_print(0, 0, text.data(), nullptr, corners.data(),
                                         static_cast<int>(corners.size() * sizeof(Corner)));
   const auto unit = [](float v) { return static_cast<int>(std::lround(v)); };
-  std::vector<TextRectangle> rectangles;
+  Vector<TextRectangle> rectangles;
   for (int i = 0; i < count; ++i) {
     const Corner &first = corners[4 * i], &opposite = corners[4 * i + 2];
     rectangles.push_back({unit(first.x), unit(first.y), unit(opposite.x), unit(opposite.y)});
@@ -42,7 +43,7 @@ std::vector<TextRectangle> text_rectangles(std::string text) {
 Image make_image(int width, int height, Rgb colour) {
   require_in_range("image width", width, 1, 65536);
   require_in_range("image height", height, 1, 65536);
-  return {width, height, std::vector<Rgb>(static_cast<std::size_t>(width) * height, colour)};
+  return {width, height, Vector<Rgb>(static_cast<std::size_t>(width) * height, colour)};
 }
 
 Image tile(std::span<const Image> images, int columns, int border, Rgb colour) {
@@ -82,10 +83,10 @@ void draw_text(Image& image, int x, int y, const std::string& text, int scale, R
 }
 
 void write_png(const Image& image, const std::filesystem::path& path) {
-  std::vector<std::uint8_t> bytes;
+  Vector<std::uint8_t> bytes;
   const auto append = [](void* out, void* data, int size) {
     const auto* first = static_cast<const std::uint8_t*>(data);
-    auto& all = *static_cast<std::vector<std::uint8_t>*>(out);
+    auto& all = *static_cast<Vector<std::uint8_t>*>(out);
     all.insert(all.end(), first, first + size);
   };
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.pixels.data(), 3 * image.width)) {
@@ -96,7 +97,7 @@ void write_png(const Image& image, const std::filesystem::path& path) {
 
 Image tile_phases(std::span<const Image, 4> phases, const std::array<std::string, 4>& captions) {
   const int scale = std::max(1, phases[0].width / 360), strip = 14 * scale, border = 4 * scale;
-  std::vector<Image> framed;
+  Vector<Image> framed;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     Image image = make_image(phases[i].width, phases[i].height + strip, kPaper);
     std::copy(phases[i].pixels.begin(), phases[i].pixels.end(), image.pixels.begin());

@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble::render {
 
@@ -16,7 +17,7 @@ static_assert(sizeof(Rgb) == 3, "pixels go to OpenGL and PNG as they stand in me
 
 struct Image {
   int width = 0, height = 0;
-  std::vector<Rgb> pixels;  // rows from the top, each from the left
+  Vector<Rgb> pixels;  // rows from the top, each from the left
 
   Rgb& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
   const Rgb& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }

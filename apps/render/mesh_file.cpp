@@ -9,6 +9,7 @@
 #include <map>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/file_set.hpp"
 #include "render/mesh_formats.hpp"
 
@@ -21,7 +22,7 @@ void check_count(const std::string& field, std::size_t size, std::size_t count) 
   }
 }
 
-void check_vectors(const std::string& field, const std::vector<Vec3>& values, std::size_t count) {
+void check_vectors(const std::string& field, const Vector<Vec3>& values, std::size_t count) {
   check_count(field, values.size(), count);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_finite(values[i])) throw Error(Code::invalid_value, field + "[" + std::to_string(i) + "] must be finite");
@@ -95,8 +96,8 @@ const Format& format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> triangles_by_fragment(const Surface& surface) {
-  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+Vector<std::pair<std::uint32_t, Vector<std::uint32_t>>> triangles_by_fragment(const Surface& surface) {
+  std::map<std::uint32_t, Vector<std::uint32_t>> groups;
   for (std::uint32_t t = 0; t < surface.mesh.triangles.size(); ++t) {
     groups[surface.fragments.empty() ? 0 : surface.fragments[t]].push_back(t);
   }

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "render/scene.hpp"
 
 namespace crumble::render {
@@ -13,11 +13,11 @@ class FileSet;
 
 /// A surface and what is known about it. What is empty is left out of the file, but for positions and triangles.
 struct Surface {
-  RenderMesh mesh;                        // rest positions per vertex; corner normals and materials per triangle
-  std::vector<Vec3> colours;              // red, green, blue in [0, 1], one per vertex
-  std::vector<std::uint32_t> fragments;   // one per triangle
-  std::vector<std::uint32_t> tetrahedra;  // that it was cut from, one per triangle
-  double time = 0;                        // simulated seconds
+  RenderMesh mesh;                   // rest positions per vertex; corner normals and materials per triangle
+  Vector<Vec3> colours;              // red, green, blue in [0, 1], one per vertex
+  Vector<std::uint32_t> fragments;   // one per triangle
+  Vector<std::uint32_t> tetrahedra;  // that it was cut from, one per triangle
+  double time = 0;                   // simulated seconds
 };
 
 /// Writes positions in metres as .ply (binary), .obj, .stl (binary), .glb or .vtu by the file's extension; an .obj gets

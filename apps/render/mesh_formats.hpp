@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "render/mesh_file.hpp"
 
 namespace crumble::render {
@@ -24,6 +25,6 @@ struct MaterialLook {
 inline const MaterialLook kMaterialLooks[] = {{"skin", {0.72, 0.66, 0.53}}, {"interior", {0.84, 0.70, 0.45}}};
 
 /// Triangles of each fragment in their order, fragments ascending; one group 0 when the surface knows no fragments.
-std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> triangles_by_fragment(const Surface& surface);
+Vector<std::pair<std::uint32_t, Vector<std::uint32_t>>> triangles_by_fragment(const Surface& surface);
 
 }  // namespace crumble::render

@@ -1,6 +1,7 @@
 #include <charconv>
 #include <map>
 
+#include "crumble/base/memory.hpp"
 #include "render/mesh_formats.hpp"
 
 namespace crumble::render {
@@ -60,9 +61,9 @@ std::string face_line(const Surface& surface, const NormalTable& normals, std::u
 }
 
 // The triangles of one material, of a surface without materials all as skin.
-void add_faces(const Surface& surface, const NormalTable& normals, const std::vector<std::uint32_t>& triangles,
+void add_faces(const Surface& surface, const NormalTable& normals, const Vector<std::uint32_t>& triangles,
                Material material, std::string& out) {
-  const std::vector<Material>& materials = surface.mesh.materials;
+  const Vector<Material>& materials = surface.mesh.materials;
   bool is_named = materials.empty();
   for (const std::uint32_t t : triangles) {
     if ((materials.empty() ? Material::skin : materials[t]) != material) continue;

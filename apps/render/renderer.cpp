@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/gl_objects.hpp"
 #include "render/shaders.hpp"
 
@@ -28,10 +28,10 @@ std::array<float, 3> to_floats(const Vec3& v) {
 }
 
 // Three vertices per triangle, because normals and material belong to the triangle.
-std::vector<Vertex> expand(const std::vector<RenderMesh>& meshes) {
-  std::vector<Vertex> vertices;
+Vector<Vertex> expand(const Vector<RenderMesh>& meshes) {
+  Vector<Vertex> vertices;
   for (const RenderMesh& mesh : meshes) {
-    const std::vector<Vec3>& rest = mesh.rest_positions.empty() ? mesh.positions : mesh.rest_positions;
+    const Vector<Vec3>& rest = mesh.rest_positions.empty() ? mesh.positions : mesh.rest_positions;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t v = mesh.triangles[t][k];
@@ -46,7 +46,7 @@ std::vector<Vertex> expand(const std::vector<RenderMesh>& meshes) {
   return vertices;
 }
 
-void add_floor(std::vector<Vertex>& vertices, const Vec3& center, double radius) {
+void add_floor(Vector<Vertex>& vertices, const Vec3& center, double radius) {
   constexpr int kCorners[6][2] = {{-1, -1}, {-1, 1}, {1, 1}, {-1, -1}, {1, 1}, {1, -1}};
   for (const auto& [x, z] : kCorners) {
     const auto position = to_floats(center + radius * Vec3(x, 0, z));
@@ -203,7 +203,7 @@ void Renderer::draw(const Scene& scene, int width, int height, unsigned framebuf
   require_in_range("width", width, 1, 8192);
   require_in_range("height", height, 1, 8192);
   const View view = make_view(scene, static_cast<double>(width) / height);
-  std::vector<Vertex> vertices = expand(scene.meshes);
+  Vector<Vertex> vertices = expand(scene.meshes);
   const std::size_t casters = vertices.size();
   if (scene.floor_height) add_floor(vertices, view.floor_center, view.floor_radius);
 

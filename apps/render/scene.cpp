@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 
 namespace crumble::render {
@@ -18,7 +19,7 @@ void require_count(const std::string& field, std::size_t count, std::size_t want
   }
 }
 
-void require_all_finite(const std::string& field, const std::vector<Vec3>& values) {
+void require_all_finite(const std::string& field, const Vector<Vec3>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_finite(values[i])) throw Error(Code::invalid_value, field + "[" + std::to_string(i) + "] must be finite");
   }
@@ -54,7 +55,7 @@ Vec3 unit_or_zero(const Vec3& v) {
 
 }  // namespace
 
-BoundingSphere bounding_sphere(const std::vector<RenderMesh>& meshes) {
+BoundingSphere bounding_sphere(const Vector<RenderMesh>& meshes) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec3 lower = Vec3::Constant(kFar), upper = Vec3::Constant(-kFar);
   for (const RenderMesh& mesh : meshes) {
@@ -77,12 +78,12 @@ void check(const Scene& scene) {
   if (scene.floor_height) require_finite("floor_height", *scene.floor_height);
 }
 
-RenderMesh make_render_mesh(const TriangleMesh& mesh, std::vector<Material> materials, double crease_degrees) {
+RenderMesh make_render_mesh(const TriangleMesh& mesh, Vector<Material> materials, double crease_degrees) {
   require_in_range("crease_degrees", crease_degrees, 0, 180);
   require_count("materials", materials.size(), mesh.triangles.size());
   const double least_cosine = cos_exact(crease_degrees * kPi / 180) - 1e-9;
-  std::vector<Vec3> weighted(mesh.triangles.size()), facing(mesh.triangles.size());
-  std::vector<std::vector<std::size_t>> around(mesh.vertices.size());
+  Vector<Vec3> weighted(mesh.triangles.size()), facing(mesh.triangles.size());
+  Vector<Vector<std::size_t>> around(mesh.vertices.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     weighted[t] = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);

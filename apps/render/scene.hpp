@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 #include "render/camera.hpp"
 
@@ -23,15 +23,15 @@ using CornerNormals = std::array<Eigen::Vector3f, 3>;  // unit, one per corner o
 
 /// Closed, outward triangles in the scene's frame.
 struct RenderMesh {
-  std::vector<Vec3> positions;       // metres
-  std::vector<Vec3> rest_positions;  // holds the grain to the material while it moves; empty: same as positions
-  std::vector<Triangle> triangles;
-  std::vector<CornerNormals> corner_normals;  // one per triangle
-  std::vector<Material> materials;            // one per triangle
+  Vector<Vec3> positions;       // metres
+  Vector<Vec3> rest_positions;  // holds the grain to the material while it moves; empty: same as positions
+  Vector<Triangle> triangles;
+  Vector<CornerNormals> corner_normals;  // one per triangle
+  Vector<Material> materials;            // one per triangle
 };
 
 struct Scene {
-  std::vector<RenderMesh> meshes;
+  Vector<RenderMesh> meshes;
   Camera camera;
   Vec3 to_light = {-0.55, 0.76, 0.43};       // towards the key light, any length
   std::optional<double> floor_height = 0.0;  // y of a floor, metres; none: the meshes float before the background
@@ -42,7 +42,7 @@ struct BoundingSphere {
   Vec3 center = Vec3::Zero();
   double radius = 0;  // metres
 };
-BoundingSphere bounding_sphere(const std::vector<RenderMesh>& meshes);
+BoundingSphere bounding_sphere(const Vector<RenderMesh>& meshes);
 
 /// Throws Error, naming the field: mesh (array lengths differ, index past the end), invalid_value (a number that is not
 /// finite), empty (nothing to draw), out_of_range (all in one point, no light), and what the camera's check throws.
@@ -51,6 +51,6 @@ void check(const Scene& scene);
 /// Normals for triangles that come without: at each corner the mean, weighted by area, over the triangles round that
 /// vertex which have the same material and a face normal within `crease_degrees` of the corner's own triangle.
 /// `materials`: one per triangle.
-RenderMesh make_render_mesh(const TriangleMesh& mesh, std::vector<Material> materials, double crease_degrees);
+RenderMesh make_render_mesh(const TriangleMesh& mesh, Vector<Material> materials, double crease_degrees);
 
 }  // namespace crumble::render

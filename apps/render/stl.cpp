@@ -1,6 +1,7 @@
 #include <array>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/mesh_formats.hpp"
 
 namespace crumble::render {
@@ -13,7 +14,7 @@ std::string to_stl(const Surface& surface) {
   };
   const std::array<char, 80> header = {"crumble surface, metres"};
   out.put_raw(header.data(), header.size());
-  const std::vector<Vec3>& at = surface.mesh.positions;
+  const Vector<Vec3>& at = surface.mesh.positions;
   out.put(static_cast<std::uint32_t>(surface.mesh.triangles.size()));
   for (const auto& [a, b, c] : surface.mesh.triangles) {
     const Vec3 across = cross(at[b] - at[a], at[c] - at[a]);

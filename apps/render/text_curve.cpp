@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::render {
 namespace {
@@ -75,7 +75,7 @@ class Canvas {
 
  private:
   int width_, height_;
-  std::vector<std::uint8_t> cells_;
+  Vector<std::uint8_t> cells_;
 };
 
 std::string number(double value) {
@@ -128,7 +128,7 @@ std::string right_aligned(const std::string& text) {
 
 // The line below the curve with a tick at each step, and their numbers, the label after the last.
 std::string x_axis(const Axis& axis, int width, std::string_view label) {
-  std::vector<bool> is_tick(static_cast<std::size_t>(width), false);
+  Vector<bool> is_tick(static_cast<std::size_t>(width), false);
   std::string numbers;
   for (int i = 0; i <= kXIntervals; ++i) {
     const int column = (i * (width - 1) + kXIntervals / 2) / kXIntervals;
@@ -142,8 +142,8 @@ std::string x_axis(const Axis& axis, int width, std::string_view label) {
   return margin + "\u2514" + line + '\n' + margin + ' ' + numbers + "  " + std::string(label) + '\n';
 }
 
-std::vector<double> scaled(std::span<const double> values, const Range& range, int dots) {
-  std::vector<double> out;
+Vector<double> scaled(std::span<const double> values, const Range& range, int dots) {
+  Vector<double> out;
   for (const double v : values) out.push_back((v - range.least) / (range.greatest - range.least) * (dots - 1));
   return out;
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "render/mesh_formats.hpp"
 
@@ -35,7 +36,7 @@ template <>
 constexpr const char* kTypeName<double> = "Float64";
 
 template <Plain T>
-pugi::xml_node add_array(pugi::xml_node parent, const std::string& name, const std::vector<T>& values) {
+pugi::xml_node add_array(pugi::xml_node parent, const std::string& name, const Vector<T>& values) {
   pugi::xml_node array = parent.append_child("DataArray");
   array.append_attribute("type") = kTypeName<T>;
   array.append_attribute("Name") = name.c_str();
@@ -47,13 +48,13 @@ pugi::xml_node add_array(pugi::xml_node parent, const std::string& name, const s
   return array;
 }
 
-void add_array(pugi::xml_node parent, const std::string& name, const std::vector<Vec3>& values) {
-  std::vector<double> numbers;
+void add_array(pugi::xml_node parent, const std::string& name, const Vector<Vec3>& values) {
+  Vector<double> numbers;
   for (const Vec3& v : values) numbers.insert(numbers.end(), {v.x(), v.y(), v.z()});
   add_array(parent, name, numbers).append_attribute("NumberOfComponents") = "3";
 }
 
-void add_data(pugi::xml_node piece, const char* kind, const std::vector<VtkArray>& arrays) {
+void add_data(pugi::xml_node piece, const char* kind, const Vector<VtkArray>& arrays) {
   pugi::xml_node data = piece.append_child(kind);
   for (const VtkArray& array : arrays) {
     std::visit([&](const auto& values) { add_array(data, array.name, values); }, array.values);
@@ -76,12 +77,12 @@ std::size_t corner_count(VtkCell cell) {
 
 void add_cells(pugi::xml_node piece, const VtkGrid& grid) {
   const std::size_t corners = corner_count(grid.cell), count = grid.corners.size() / corners;
-  std::vector<std::int32_t> ends;
+  Vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= count; ++i) ends.push_back(static_cast<std::int32_t>(i * corners));
   pugi::xml_node cells = piece.append_child("Cells");
   add_array(cells, "connectivity", grid.corners);
   add_array(cells, "offsets", ends);
-  add_array(cells, "types", std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(grid.cell)));
+  add_array(cells, "types", Vector<std::uint8_t>(count, static_cast<std::uint8_t>(grid.cell)));
   piece.append_attribute("NumberOfPoints") = std::to_string(grid.points.size()).c_str();
   piece.append_attribute("NumberOfCells") = std::to_string(count).c_str();
 }
@@ -107,7 +108,7 @@ std::string to_text(const pugi::xml_document& document) {
 std::string to_vtu(const VtkGrid& grid) {
   pugi::xml_document document;
   pugi::xml_node content = add_root(document, "UnstructuredGrid").append_child("UnstructuredGrid");
-  add_array(content.append_child("FieldData"), "TimeValue", std::vector<double>{grid.time})
+  add_array(content.append_child("FieldData"), "TimeValue", Vector<double>{grid.time})
       .append_attribute("NumberOfTuples") = "1";
   pugi::xml_node piece = content.append_child("Piece");
   add_array(piece.append_child("Points"), "Points", grid.points);
@@ -126,18 +127,18 @@ std::string to_vtu(const Surface& surface) {
   grid.corners = to_corners(mesh.triangles);
   if (!mesh.rest_positions.empty()) grid.point_data.push_back({"rest", mesh.rest_positions});
   if (!surface.colours.empty()) grid.point_data.push_back({"colour", surface.colours});
-  const auto add_ids = [&](const char* name, const std::vector<std::uint32_t>& ids) {
-    if (!ids.empty()) grid.cell_data.push_back({name, std::vector<std::int32_t>(ids.begin(), ids.end())});
+  const auto add_ids = [&](const char* name, const Vector<std::uint32_t>& ids) {
+    if (!ids.empty()) grid.cell_data.push_back({name, Vector<std::int32_t>(ids.begin(), ids.end())});
   };
   add_ids("fragment", surface.fragments);
   add_ids("tetrahedron", surface.tetrahedra);
-  std::vector<std::uint8_t> materials;
+  Vector<std::uint8_t> materials;
   for (const Material material : mesh.materials) materials.push_back(static_cast<std::uint8_t>(material));
   if (!materials.empty()) grid.cell_data.push_back({"material", materials});
   return to_vtu(grid);
 }
 
-std::string to_pvd(const std::vector<std::pair<double, std::string>>& frames) {
+std::string to_pvd(const Vector<std::pair<double, std::string>>& frames) {
   pugi::xml_document document;
   pugi::xml_node collection = add_root(document, "Collection").append_child("Collection");
   for (const auto& [time, file] : frames) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 #include <variant>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble::render {
@@ -17,7 +17,7 @@ namespace crumble::render {
 /// One value per point or per cell.
 struct VtkArray {
   std::string name;
-  std::variant<std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<double>, std::vector<Vec3>> values;
+  std::variant<Vector<std::uint8_t>, Vector<std::int32_t>, Vector<double>, Vector<Vec3>> values;
 };
 
 enum class VtkCell : std::uint8_t { vertex = 1, line = 3, triangle = 5, tetrahedron = 10 };
@@ -25,18 +25,18 @@ enum class VtkCell : std::uint8_t { vertex = 1, line = 3, triangle = 5, tetrahed
 /// Cells of one kind.
 struct VtkGrid {
   double time = 0;  // seconds
-  std::vector<Vec3> points;
+  Vector<Vec3> points;
   VtkCell cell = VtkCell::triangle;
-  std::vector<std::int32_t> corners;  // point indices, cell by cell
-  std::vector<VtkArray> point_data, cell_data;
+  Vector<std::int32_t> corners;  // point indices, cell by cell
+  Vector<VtkArray> point_data, cell_data;
 };
 
 std::string to_vtu(const VtkGrid& grid);
 
 /// The point indices of cells that are arrays of indices.
 template <class Cells>
-std::vector<std::int32_t> to_corners(const Cells& cells) {
-  std::vector<std::int32_t> corners;
+Vector<std::int32_t> to_corners(const Cells& cells) {
+  Vector<std::int32_t> corners;
   for (const auto& cell : cells) {
     for (const std::uint32_t point : cell) corners.push_back(static_cast<std::int32_t>(point));
   }
@@ -44,6 +44,6 @@ std::vector<std::int32_t> to_corners(const Cells& cells) {
 }
 
 /// `frames`: time in seconds and file name relative to the .pvd.
-std::string to_pvd(const std::vector<std::pair<double, std::string>>& frames);
+std::string to_pvd(const Vector<std::pair<double, std::string>>& frames);
 
 }  // namespace crumble::render

@@ -2,7 +2,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
-#include <vector>
+#include "crumble/base/memory.hpp"
 
 namespace crumble::bench {
 namespace {
@@ -15,8 +15,8 @@ class SoftBody : public BulletNetwork {
  public:
   SoftBody(const SpringNetwork& network, std::span<const Vec3> rest, double tau) : tau_(static_cast<btScalar>(tau)) {
     world_.m_gravity = {0, 0, 0};
-    std::vector<btVector3> nodes;
-    std::vector<btScalar> masses;
+    Vector<btVector3> nodes;
+    Vector<btScalar> masses;
     for (std::size_t i = 0; i < network.node_count(); ++i) {
       nodes.push_back(to_bullet(rest[i]));
       masses.push_back(network.fixed[i] ? 0 : static_cast<btScalar>(network.masses[i]));

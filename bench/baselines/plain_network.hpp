@@ -3,8 +3,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/coefficients.hpp"
 #include "crumble/network/spring_network.hpp"
 
@@ -26,9 +26,9 @@ class PlainNetwork {
   struct Gains {  // of one node, see StepCoefficients
     double decay, velocity_gain, drift, force_gain;
   };
-  std::vector<Spring> springs_;
-  std::vector<Gains> gains_;
-  std::vector<Vec3> positions_, velocities_, forces_;
+  Vector<Spring> springs_;
+  Vector<Gains> gains_;
+  Vector<Vec3> positions_, velocities_, forces_;
 };
 
 }  // namespace crumble::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/device/hand.hpp"
 #include "scenes/scene.hpp"
@@ -35,7 +36,7 @@ Times times_of(const Setup& setup) {
   return {down, up, up + kMove + 0.3};
 }
 
-std::vector<HandPoint> motion(const Setup& setup) {
+Vector<HandPoint> motion(const Setup& setup) {
   const double deep = -(kClearance + setup.depth), side = setup.lateral ? 1e-3 : 0;
   const Times t = times_of(setup);
   return {{kWait, Vec3::Zero()},
@@ -114,8 +115,8 @@ Limits limits_of(const Setup& setup) {
 
 }  // namespace
 
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
+Vector<Case> all_cases() {
+  Vector<Case> cases;
   for (const Grip& grip : {kLoose, kFirm, kBare}) {
     for (const double k : {30.0, 100.0}) {
       for (const double tick : {2.9e-3, 1e-3}) {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/haptics/loop.hpp"
 
 namespace crumble::closed_loop {
@@ -32,7 +32,7 @@ struct Case {
   std::uint32_t delay = 0;       // ticks, of the force in the device; the loop knows of it
 };
 /// Three grips, k of 30 and 100 N/m, ticks of 2.9 and 1 ms, with and without mean, delay 0 and 1.
-std::vector<Case> all_cases();
+Vector<Case> all_cases();
 std::string to_string(const Case& c);
 
 /// What stands between body and hand, and how well the device sees.

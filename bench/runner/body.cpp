@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "runner/choice.hpp"
@@ -44,23 +45,23 @@ TetMesh fit_box_mesh(std::size_t springs, Structure structure) {
 }
 
 // 0 ... n - 1 in random order (Fisher and Yates).
-std::vector<std::uint32_t> random_order(std::size_t n, Random& random) {
-  std::vector<std::uint32_t> order(n);
+Vector<std::uint32_t> random_order(std::size_t n, Random& random) {
+  Vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
   return order;
 }
 
-TetMesh shuffle(const TetMesh& mesh, std::vector<std::uint32_t>& places) {
+TetMesh shuffle(const TetMesh& mesh, Vector<std::uint32_t>& places) {
   Random random(1);
   places = random_order(mesh.node_count(), random);
-  std::vector<Vec3> positions(mesh.node_count());
-  std::vector<NodeKind> kinds(mesh.node_count());
+  Vector<Vec3> positions(mesh.node_count());
+  Vector<NodeKind> kinds(mesh.node_count());
   for (std::size_t i = 0; i < places.size(); ++i) {
     positions[places[i]] = mesh.positions[i];
     kinds[places[i]] = mesh.kinds[i];
   }
-  std::vector<Tetrahedron> tetrahedra;
+  Vector<Tetrahedron> tetrahedra;
   for (const std::uint32_t t : random_order(mesh.tetrahedra.size(), random)) {
     const Tetrahedron& old = mesh.tetrahedra[t];
     tetrahedra.push_back({places[old[0]], places[old[1]], places[old[2]], places[old[3]]});
@@ -82,11 +83,11 @@ void set_scene(BenchBody& body) {
 
 }  // namespace
 
-std::vector<std::string> structure_names() {
+Vector<std::string> structure_names() {
   return {"lattice", "default", "shuffled"};
 }
 
-std::vector<std::string> stick_names() {
+Vector<std::string> stick_names() {
   return {"paper", "scaled"};
 }
 

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble::bench {
 
-double median(std::vector<double> values) {
+double median(Vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-Percentiles percentiles(std::vector<double> values) {
+Percentiles percentiles(Vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size() - 1)))];

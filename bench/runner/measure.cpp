@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "runner/choice.hpp"
 #include "runner/network_race.hpp"
 
@@ -42,7 +43,7 @@ void step(Simulation& sim, const Pose& pose) {
 
 // Each of the steps has been timed in every pass.
 struct Times {
-  std::vector<double> cpu, wall;  // microseconds
+  Vector<double> cpu, wall;  // microseconds
 };
 
 // What the machine does to any program: an empty loop that takes as long as the median step, as many times.
@@ -64,7 +65,7 @@ Times time_control(double microseconds, std::size_t count, double clock_cost) {
 
 // Microseconds that a clock adds to what it measures.
 double cost_of(double (*clock)() noexcept) {
-  std::vector<double> costs;
+  Vector<double> costs;
   for (int i = 0; i < 1001; ++i) {
     const double before = clock();
     wall_seconds(), wall_seconds();
@@ -74,10 +75,10 @@ double cost_of(double (*clock)() noexcept) {
 }
 
 // The step's own CPU time: what an interrupt takes hits one pass, what the step does comes back in each.
-std::vector<double> medians_of_passes(const std::vector<double>& times, std::size_t steps) {
-  std::vector<double> medians;
+Vector<double> medians_of_passes(const Vector<double>& times, std::size_t steps) {
+  Vector<double> medians;
   for (std::size_t i = 0; i < steps; ++i) {
-    std::vector<double> passes;
+    Vector<double> passes;
     passes.reserve(kPasses);
     for (std::size_t at = i; at < times.size(); at += steps) passes.push_back(times[at]);
     medians.push_back(median(std::move(passes)));
@@ -85,13 +86,13 @@ std::vector<double> medians_of_passes(const std::vector<double>& times, std::siz
   return medians;
 }
 
-StepProfile medians(const std::vector<StepProfile>& profiles) {
+StepProfile medians(const Vector<StepProfile>& profiles) {
   StepProfile result;
   for (double StepProfile::*stage :
        {&StepProfile::move_tool, &StepProfile::find_contacts, &StepProfile::project_contacts,
         &StepProfile::touch_fragments, &StepProfile::solve_network, &StepProfile::cut_springs,
         &StepProfile::sum_reaction, &StepProfile::finish_step}) {
-    std::vector<double> times;
+    Vector<double> times;
     times.reserve(profiles.size());
     for (const StepProfile& profile : profiles) times.push_back(1e6 * profile.*stage);
     result.*stage = median(std::move(times));
@@ -105,12 +106,12 @@ void time_steps(const BenchBody& body, Simulation& sim, Row& row) {
   const std::size_t first = press.warm_up_steps();
   for (std::size_t i = 0; i < first; ++i) step(sim, press.pose(i));
   row.cuts_before = sim.counters().cuts;
-  const std::vector<std::uint8_t> saved = sim.snapshot();
+  const Vector<std::uint8_t> saved = sim.snapshot();
   for (std::size_t i = 0; i < std::min<std::size_t>(row.steps, 50); ++i) step(sim, press.pose(first + i));
 
   const double clock_cost = cost_of(thread_cpu_seconds);
   Times times;
-  std::vector<StepProfile> profiles;
+  Vector<StepProfile> profiles;
   for (int pass = 0; pass < kPasses; ++pass) {
     sim.restore(saved);
     for (std::size_t i = 0; i < row.steps; ++i) {
@@ -134,7 +135,7 @@ void time_steps(const BenchBody& body, Simulation& sim, Row& row) {
 
 }  // namespace
 
-std::vector<std::string> precision_names() {
+Vector<std::string> precision_names() {
   return {"float32", "float64"};
 }
 

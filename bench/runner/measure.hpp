@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/simulation.hpp"
 #include "runner/body.hpp"
 #include "runner/clocks.hpp"
 
 namespace crumble::bench {
 
-std::vector<std::string> precision_names();
+Vector<std::string> precision_names();
 /// Throws Error(unsupported).
 Precision parse_precision(const std::string& name);
 inline constexpr std::uint32_t kMostThreads = 64;

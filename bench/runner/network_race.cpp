@@ -6,6 +6,7 @@
 #include "baselines/bullet_network.hpp"
 #include "baselines/plain_network.hpp"
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble::bench {
@@ -16,8 +17,8 @@ constexpr double kLapSeconds = 2e-3;  // a lap is at least one step
 
 struct Contestant {
   std::function<void()> restart, step;
-  std::size_t laps = 1;               // steps per round
-  std::vector<double> cpu{}, wall{};  // of a step, microseconds, one per round
+  std::size_t laps = 1;          // steps per round
+  Vector<double> cpu{}, wall{};  // of a step, microseconds, one per round
 };
 
 // The first step warms the caches up and is not counted.
@@ -31,7 +32,7 @@ void run_round(Contestant& c) {
   c.cpu.push_back((thread_cpu_seconds() - cpu) * share);
 }
 
-void run_rounds(const std::vector<Contestant*>& contestants) {
+void run_rounds(const Vector<Contestant*>& contestants) {
   for (Contestant* c : contestants) {
     run_round(*c);
     c->laps = static_cast<std::size_t>(std::clamp(kLapSeconds * 1e6 / c->wall[0], 1.0, 1000.0));
@@ -42,16 +43,16 @@ void run_rounds(const std::vector<Contestant*>& contestants) {
   }
 }
 
-double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> ratios;
+double median_ratio(const Vector<double>& a, const Vector<double>& b) {
+  Vector<double> ratios;
   for (std::size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / b[i]);
   return median(std::move(ratios));
 }
 
 // A body that is moving: every free node a little off its place, by up to 1 % of the spacing on each axis.
-std::vector<Vec3> disturbed(const TetMesh& mesh, const SpringNetwork& network) {
+Vector<Vec3> disturbed(const TetMesh& mesh, const SpringNetwork& network) {
   Random random(2);
-  std::vector<Vec3> positions = mesh.positions;
+  Vector<Vec3> positions = mesh.positions;
   const double most = 0.01 * network.rest_lengths[0];
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (network.fixed[i]) continue;
@@ -77,8 +78,8 @@ void race_networks(const BenchBody& body, const SpringNetwork& network, const St
   const bool shuffled = body.structure == "shuffled";
   const SpringNetwork ordered =
       make_network(body.ordered, def.material, def.mass_rule, nodes_below(body.ordered, 1e-6));
-  const std::vector<Vec3> start = disturbed(body.ordered, ordered);
-  std::vector<Vec3> start_as_it_comes(start.size());
+  const Vector<Vec3> start = disturbed(body.ordered, ordered);
+  Vector<Vec3> start_as_it_comes(start.size());
   for (std::size_t i = 0; i < start.size(); ++i) start_as_it_comes[body.places[i]] = start[i];
 
   const auto solver = NetworkSolver::make(network, coefficients, def.mesh.positions, settings);
@@ -93,7 +94,7 @@ void race_networks(const BenchBody& body, const SpringNetwork& network, const St
 
   PlainNetwork plain(ordered, make_coefficients(ordered, def.step.tau, def.step.policy));
   Contestant theirs{[&] { plain.place(start); }, [&] { plain.step(); }};
-  std::vector<Contestant*> contestants{&ours, &theirs};
+  Vector<Contestant*> contestants{&ours, &theirs};
 
   PlainNetwork plain_as_it_comes(network, coefficients);
   Contestant unsorted{[&] { plain_as_it_comes.place(start_as_it_comes); }, [&] { plain_as_it_comes.step(); }};

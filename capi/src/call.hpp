@@ -37,19 +37,22 @@ class Call {
   explicit Call(const char* function) : function_(function) {}
   /// Sets the thread's last error and returns `result`. Allocates nothing, so a step may fail this way.
   crumble_result fail(crumble_result result, std::initializer_list<TextPart> text) const noexcept;
+  /// With the names of C's fields.
+  crumble_result fail(const Error& error) const noexcept;
+  /// Of the last failure, unless it has been told of it or the function is for servo loops.
+  void tell_log() const noexcept;
 
  private:
   const char* function_;
 };
 
-/// Runs `body(call)`, which returns a crumble_result, fails through `call` or throws.
+/// `body(call)`, which returns a crumble_result, fails through `call` or throws.
 template <class Body>
-crumble_result guard(const char* function, Body&& body) noexcept {
-  const Call call(function);
+crumble_result run(const Call& call, Body&& body) noexcept {
   try {
     return std::forward<Body>(body)(call);
   } catch (const Error& error) {
-    return call.fail(static_cast<crumble_result>(error.code()), {error.what()});
+    return call.fail(error);
   } catch (const std::bad_alloc&) {
     return call.fail(CRUMBLE_E_NO_MEMORY, {"out of memory"});
   } catch (const std::exception& error) {
@@ -57,6 +60,15 @@ crumble_result guard(const char* function, Body&& body) noexcept {
   } catch (...) {
     return call.fail(CRUMBLE_E_INTERNAL, {"unexpected exception"});
   }
+}
+
+/// What every function of the API stands in: the same, and tells the log of a failure.
+template <class Body>
+crumble_result guard(const char* function, Body&& body) noexcept {
+  const Call call(function);
+  const crumble_result result = run(call, std::forward<Body>(body));
+  if (result != CRUMBLE_OK) call.tell_log();
+  return result;
 }
 
 /// Throws Error(null) naming the parameter.

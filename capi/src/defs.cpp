@@ -19,6 +19,12 @@ void require_zero_tail(const char* name, const void* given, std::size_t from, st
   }
 }
 
+std::filesystem::path path_of(const char* path) {
+  require_pointer("path", path);
+  const auto* const utf8 = reinterpret_cast<const char8_t*>(path);
+  return std::u8string(utf8, utf8 + std::string_view(path).size());
+}
+
 void require_at_most(const char* field, std::uint32_t value, std::uint32_t greatest) {
   if (value <= greatest) return;
   throw Error(Code::out_of_range,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <type_traits>
 
@@ -57,6 +58,9 @@ void write_struct(const char* name, Struct* out, const Struct& values) {
   require_pointer(name, out);
   write_struct(name, out, out->struct_size, values);
 }
+
+/// UTF-8. Throws Error(null).
+std::filesystem::path path_of(const char* path);
 
 /// Throws Error(out_of_range) unless value <= greatest.
 void require_at_most(const char* field, std::uint32_t value, std::uint32_t greatest);

@@ -8,6 +8,7 @@
 #include "crumble/device/hapi_log.hpp"
 #include "defs.hpp"
 #include "device_def.hpp"
+#include "log.hpp"
 #include "objects.hpp"
 #include "rigid.hpp"
 
@@ -119,9 +120,13 @@ using namespace crumble;
 using namespace crumble::capi;
 
 const char* crumble_device_kind_name(uint32_t index) {
-  const auto kinds = available_devices();
-  if (index < kinds.size()) return to_string(kinds[index]);
-  return index == kinds.size() ? to_string(DeviceKind::custom) : nullptr;
+  const char* name = nullptr;
+  guard(__func__, [&](const Call&) {
+    const auto kinds = available_devices();
+    if (index <= kinds.size()) name = to_string(index < kinds.size() ? kinds[index] : DeviceKind::custom);
+    return CRUMBLE_OK;
+  });
+  return name;
 }
 
 crumble_result crumble_device_kind(const char* name, uint32_t* kind) {
@@ -136,7 +141,10 @@ crumble_result crumble_device_kind(const char* name, uint32_t* kind) {
 crumble_result crumble_device_open(const crumble_device_def* def, crumble_device* device) {
   return guard(__func__, [&](const Call&) {
     require_pointer("device", device);
-    publish(open(read_device_def(def)), device);
+    auto opened = open(read_device_def(def));
+    const DeviceInfo& info = opened->device->info();
+    log(CRUMBLE_LOG_NOTE, "opened " + info.name + (info.driver.empty() ? "" : " through " + info.driver));
+    publish(std::move(opened), device);
     return CRUMBLE_OK;
   });
 }
@@ -188,9 +196,9 @@ crumble_result crumble_device_get_text(crumble_device device, const char** text)
 
 crumble_result crumble_device_save_trajectory(crumble_device device, const char* path) {
   return with<OpenDevice>(__func__, device, [&](const OpenDevice& d, const Call& call) -> crumble_result {
-    require_pointer("path", path);
+    const std::filesystem::path to = path_of(path);
     if (!d.recorder) return call.fail(CRUMBLE_E_STATE, {"nothing is recorded: record_capacity was 0"});
-    write_trajectory(path, d.recorder->trajectory());
+    write_trajectory(to, d.recorder->trajectory());
     return CRUMBLE_OK;
   });
 }

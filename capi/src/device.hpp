@@ -12,7 +12,7 @@
 
 namespace crumble::capi {
 
-struct OpenDevice {
+struct OpenDevice : Allocated {
   using Handle = crumble_device;
   static constexpr const char* kName = "device";
   static HandleTable table;

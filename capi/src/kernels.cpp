@@ -9,7 +9,10 @@ namespace crumble::capi {
 
 // Never destroyed: a program may still print a name while it ends.
 const std::vector<std::string>& kernel_texts() {
-  static const auto* const texts = new std::vector<std::string>(kernel_names());
+  static const auto* const texts = [] {
+    const auto names = kernel_names();
+    return new std::vector<std::string>(names.begin(), names.end());  // not the host's memory: it is never given back
+  }();
   return *texts;
 }
 

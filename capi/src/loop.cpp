@@ -2,6 +2,8 @@
 // them meanwhile, and nobody waits.
 #include "loop.hpp"
 
+#include "sim_change.hpp"
+
 namespace crumble::capi {
 
 constinit HandleTable Loop::table{5};
@@ -83,6 +85,17 @@ crumble_result Loop::stop(const Call& call) noexcept {
   const crumble_result result = close(call);
   if (taken_) give_back();
   return result;
+}
+
+// While it runs the simulation is the loop's, and what of the Sim the edit looks at is guarded by the loop.
+crumble_result Loop::change(const char* function, const Call& call,
+                            const std::function<void(SimulationDef&, Sim&)>& edit) {
+  const auto edit_definition = [&](SimulationDef& definition) { edit(definition, owner_); };
+  if (!haptic_->running()) {
+    return with<Sim>(function, sim_handle_, [&](Sim& sim, const Call&) { return alter(sim, call, edit_definition); });
+  }
+  haptic_->change(edit_definition);
+  return CRUMBLE_OK;
 }
 
 crumble_result Loop::tick(const Call& call) {

@@ -1,10 +1,11 @@
 // What a loop's handle stands for.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/haptics/loop.hpp"
 #include "device.hpp"
 #include "objects.hpp"
@@ -25,7 +26,7 @@ class Need {
   std::atomic<std::uint32_t>* loops_;
 };
 
-class Loop {
+class Loop : public Allocated {
  public:
   using Handle = crumble_loop;
   static constexpr const char* kName = "loop";
@@ -48,6 +49,8 @@ class Loop {
   /// The same, before it is destroyed: simulation and devices stay the loop's, which sends them zero once more then.
   crumble_result close(const Call& call) noexcept;
   crumble_result tick(const Call& call);
+  /// Any thread. `edit(definition, sim)`.
+  crumble_result change(const char* function, const Call& call, const std::function<void(SimulationDef&, Sim&)>& edit);
 
  private:
   struct HandDevice {
@@ -74,7 +77,7 @@ class Loop {
   Sim& owner_;
   Simulation& sim_;
   Need need_;
-  std::vector<HandDevice> devices_;        // by hand
+  Vector<HandDevice> devices_;             // by hand
   std::unique_ptr<HapticLoop> haptic_;     // borrows all the above
   bool taken_ = false;                     // simulation and devices
   bool ticked_ = false;                    // by the host, without start, since the last stop

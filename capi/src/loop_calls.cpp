@@ -2,6 +2,8 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "field_names.hpp"
+#include "log.hpp"
 #include "loop.hpp"
 #include "loop_def.hpp"
 #include "rigid.hpp"
@@ -54,6 +56,7 @@ crumble_result crumble_loop_create(crumble_sim sim, const crumble_loop_def* def,
       definition.hands.back().device = object->device(hand).device.get();
     }
     object->make(std::move(definition));
+    for (const std::string& warning : object->haptic().warnings()) log(CRUMBLE_LOG_WARNING, in_names_of_c(warning));
     publish(std::move(object), loop);
     return CRUMBLE_OK;
   });
@@ -68,7 +71,13 @@ crumble_result crumble_loop_destroy(crumble_loop loop) {
 }
 
 crumble_result crumble_loop_start(crumble_loop loop) {
-  return with<Loop>(__func__, loop, [](Loop& l, const Call& call) { return l.start(call); });
+  return with<Loop>(__func__, loop, [](Loop& l, const Call& call) {
+    const crumble_result result = l.start(call);
+    if (const std::string how = l.haptic().realtime(); result == CRUMBLE_OK && !how.empty()) {
+      log(CRUMBLE_LOG_NOTE, "the loop's thread: " + how);
+    }
+    return result;
+  });
 }
 
 crumble_result crumble_loop_stop(crumble_loop loop) {

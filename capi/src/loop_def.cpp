@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "defs.hpp"
 #include "rigid.hpp"
 
@@ -96,13 +97,13 @@ LoopDef read_loop_def(const crumble_loop_def* def) {
   return out;
 }
 
-std::vector<crumble_hand_def> read_hands(const crumble_hand_def* hands, std::uint32_t count) {
+Vector<crumble_hand_def> read_hands(const crumble_hand_def* hands, std::uint32_t count) {
   if (count > CRUMBLE_MOST_HANDS) {
     throw Error(Code::too_large,
                 "hand_count must be at most " + std::to_string(CRUMBLE_MOST_HANDS) + ", is " + std::to_string(count));
   }
   if (count > 0) require_pointer("hands", hands);
-  std::vector<crumble_hand_def> out;
+  Vector<crumble_hand_def> out;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::string name = "hands[" + std::to_string(i) + "]";
     if (i > 0) check_struct_size("hands[0]", hands->struct_size);
@@ -137,7 +138,7 @@ namespace {
 
 void apply_preset(crumble_loop_def* def, crumble_hand_def* hands, std::uint32_t count) {
   crumble_loop_def loop = read_def("def", def, default_loop_def());
-  const std::vector<crumble_hand_def> given = read_hands(hands, count);
+  const Vector<crumble_hand_def> given = read_hands(hands, count);
   LoopDef paper;
   paper.hands.resize(1);
   apply_paper_preset(paper);

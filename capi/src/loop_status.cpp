@@ -2,7 +2,9 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "crumble/base/memory.hpp"
 #include "defs.hpp"
+#include "field_names.hpp"
 #include "loop.hpp"
 #include "rigid.hpp"
 
@@ -144,12 +146,12 @@ crumble_result crumble_loop_get_times(crumble_loop loop, crumble_loop_times* tim
 crumble_result crumble_loop_get_warning(crumble_loop loop, uint32_t index, char* dst, uint64_t dst_bytes,
                                         uint64_t* needed) {
   return look<Loop>(__func__, loop, [&](const Loop& l, const Call& call) -> crumble_result {
-    const std::vector<std::string>& warnings = l.haptic().warnings();
+    const Vector<std::string>& warnings = l.haptic().warnings();
     if (index >= warnings.size()) {
       return call.fail(CRUMBLE_E_OUT_OF_RANGE,
                        {"index is ", index, ", the loop has ", std::uint64_t{warnings.size()}, " warnings"});
     }
-    return deliver(call, warnings[index], dst, dst_bytes, needed);
+    return deliver(call, in_names_of_c(warnings[index]), dst, dst_bytes, needed);
   });
 }
 

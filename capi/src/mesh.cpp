@@ -1,6 +1,8 @@
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/bubblemesh/presets.hpp"
+#include "crumble/tetmesh/vtk_file.hpp"
 #include "defs.hpp"
 #include "objects.hpp"
 
@@ -40,7 +42,7 @@ BubbleMeshOptions options_of(const crumble_mesh_def& def) {
 }
 
 void publish_mesh(TetMesh mesh, crumble_mesh* out) {
-  publish(std::make_unique<Mesh>(Mesh{std::make_shared<const TetMesh>(std::move(mesh))}), out);
+  publish(std::make_unique<Mesh>(Mesh{{}, share_new<const TetMesh>(std::move(mesh))}), out);
 }
 
 void require_count(const char* field, std::uint32_t count) {
@@ -98,13 +100,20 @@ crumble_result crumble_mesh_create_from_tets(const double* positions, uint32_t n
     require_count("tetrahedron_count", tetrahedron_count);
     if (node_count > 0) require_pointer("positions", positions);
     if (tetrahedron_count > 0) require_pointer("tetrahedra", tetrahedra);
-    std::vector<Vec3> points(node_count);
+    Vector<Vec3> points(node_count);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
     }
-    std::vector<Tetrahedron> tets(tetrahedron_count);
+    Vector<Tetrahedron> tets(tetrahedron_count);
     for (std::size_t t = 0; t < tets.size(); ++t) std::copy_n(tetrahedra + 4 * t, 4, tets[t].begin());
     publish_mesh(make_tet_mesh(std::move(points), std::move(tets)), mesh);
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_mesh_save_vtk(crumble_mesh mesh, const char* path) {
+  return with<Mesh>(__func__, mesh, [&](const Mesh& m, const Call&) {
+    write_vtk(*m.mesh, path_of(path));
     return CRUMBLE_OK;
   });
 }

@@ -6,7 +6,19 @@ namespace crumble::capi {
 constinit HandleTable Mesh::table{1};
 constinit HandleTable Sim::table{2};
 
-Sim::Sim(std::shared_ptr<const TetMesh> body, SimulationDef def) : mesh(std::move(body)), simulation(std::move(def)) {}
+Sim::Sim(std::shared_ptr<const TetMesh> body, Simulation made)
+    : mesh(std::move(body)),
+      simulation(std::move(made)),
+      poses(simulation.holder_count()),
+      wrenches(simulation.holder_count()) {}
+
+void Sim::build(SimulationDef def) {
+  const std::size_t holders = def.tools.size() + def.attachments.size();
+  poses.reserve(holders), wrenches.reserve(holders);
+  Simulation next(std::move(def));
+  simulation = std::move(next);
+  poses.resize(holders), wrenches.resize(holders);
+}
 
 void Sim::publish_now() noexcept {
   for (const auto& link : readers) link->publisher.publish_now(simulation);

@@ -4,9 +4,9 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "call.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/sim/recording.hpp"
 #include "crumble/sim/simulation.hpp"
@@ -15,7 +15,7 @@
 
 namespace crumble::capi {
 
-struct Mesh {
+struct Mesh : Allocated {
   using Handle = crumble_mesh;
   static constexpr const char* kName = "mesh";
   static HandleTable table;
@@ -23,13 +23,15 @@ struct Mesh {
   std::shared_ptr<const TetMesh> mesh;
 };
 
-struct Sim {
+struct Sim : Allocated {
   using Handle = crumble_sim;
   static constexpr const char* kName = "sim";
   static HandleTable table;
 
-  Sim(std::shared_ptr<const TetMesh> body, SimulationDef def);
+  Sim(std::shared_ptr<const TetMesh> body, Simulation made);
 
+  /// Another simulation of the same mesh in place of this one. Throws Error, and then changes nothing.
+  void build(SimulationDef def);
   /// Brings all readers up to the present state at once.
   void publish_now() noexcept;
   void drop_closed_readers() noexcept;
@@ -38,10 +40,11 @@ struct Sim {
   std::shared_ptr<const TetMesh> mesh;
   Simulation simulation;
   bool has_floor = false;   // the first wall
-  std::vector<Pose> poses;  // per tool; room for the step
+  Vector<Pose> poses;       // per tool; room for the step
+  Vector<Wrench> wrenches;  // likewise
   std::optional<Recording> recording;
   std::unique_ptr<SurfaceExtractor> surface;  // from the first extraction on
-  std::vector<std::shared_ptr<ReaderLink>> readers;
+  Vector<std::shared_ptr<ReaderLink>> readers;
   std::atomic<std::uint32_t> loops{0};  // that need it
 };
 

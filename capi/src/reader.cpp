@@ -8,7 +8,7 @@ constinit HandleTable Reader::table{3};
 
 Reader::Reader(std::shared_ptr<const TetMesh> body, const Simulation& simulation, const SurfaceSettings& settings)
     : mesh(std::move(body)),
-      link(std::make_shared<ReaderLink>(simulation)),
+      link(share_new<ReaderLink>(simulation)),
       state(&link->publisher.latest()),
       surface(*mesh, settings),
       masses_(simulation.network().masses),

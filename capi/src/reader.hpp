@@ -3,8 +3,8 @@
 
 #include <atomic>
 #include <memory>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/crumble.h"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/fracture/surface.hpp"
@@ -21,7 +21,7 @@ struct ReaderLink {
   std::atomic<bool> is_open{true};  // the reader has not been destroyed
 };
 
-struct Reader {
+struct Reader : Allocated {
   using Handle = crumble_reader;
   static constexpr const char* kName = "reader";
   static HandleTable table;
@@ -41,10 +41,10 @@ struct Reader {
  private:
   void list_triangles() noexcept;
 
-  std::vector<double> masses_;  // of the nodes, kg
-  std::vector<Fragment> fragments_;
+  Vector<double> masses_;  // of the nodes, kg
+  Vector<Fragment> fragments_;
   FragmentLists lists_;
-  std::vector<std::uint32_t> triangles_, first_triangles_;  // of the surface by fragment, and where each one's begin
+  Vector<std::uint32_t> triangles_, first_triangles_;  // of the surface by fragment, and where each one's begin
   bool measured_ = false, listed_ = false, triangles_listed_ = false;
 };
 

@@ -1,12 +1,26 @@
 #include "sim_def.hpp"
 
 #include "defs.hpp"
+#include "field_names.hpp"
 #include "kernels.hpp"
 
 namespace crumble::capi {
 
+namespace {
+
+void check_ball_friction(const Friction& friction) {
+  try {
+    check(friction);
+  } catch (const Error& error) {
+    throw Error(error.code(), "ball_" + in_names_of_c(error.what()));
+  }
+}
+
+}  // namespace
+
 crumble_sim_def default_sim_def() {
-  return describe(SimulationDef{}, true);
+  static const crumble_sim_def kDefaults = describe(SimulationDef{}, true);  // which takes memory
+  return kDefaults;
 }
 
 crumble_sim_def read_sim_def(const crumble_sim_def* def) {
@@ -22,7 +36,9 @@ crumble_sim_def read_sim_def(const crumble_sim_def* def) {
   require_at_most("drag_frame", given.drag_frame, CRUMBLE_DRAG_ROOM);
   require_at_most("surface_samples", given.surface_samples, 1);
   require_at_most("ball_contact", given.ball_contact, 1);
-  check(Friction{given.ball_static_friction, given.ball_dynamic_friction});
+  require_at_most("energy_audit", given.energy_audit, 1);
+  require_at_most("reserved_2", given.reserved_2, 0);
+  check_ball_friction({given.ball_static_friction, given.ball_dynamic_friction});
   return given;
 }
 
@@ -49,6 +65,7 @@ void apply(const crumble_sim_def& from, SimulationDef& to) {
   to.step.ball_contact = from.ball_contact != 0;
   to.ball_friction = {from.ball_static_friction, from.ball_dynamic_friction};
   to.material.spring_damping = from.spring_damping;
+  to.step.energy_audit = from.energy_audit != 0;
 }
 
 crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
@@ -79,6 +96,7 @@ crumble_sim_def describe(const SimulationDef& def, bool has_floor) {
   out.ball_static_friction = def.ball_friction.static_coefficient;
   out.ball_dynamic_friction = def.ball_friction.dynamic_coefficient;
   out.spring_damping = def.material.spring_damping;
+  out.energy_audit = def.step.energy_audit;
   return out;
 }
 

@@ -2,16 +2,12 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "crumble/base/memory.hpp"
+#include "defs.hpp"
 #include "objects.hpp"
 
 namespace crumble::capi {
 namespace {
-
-std::filesystem::path path_of(const char* path) {
-  require_pointer("path", path);
-  const auto* const utf8 = reinterpret_cast<const char8_t*>(path);
-  return std::u8string(utf8, utf8 + std::string_view(path).size());
-}
 
 Recording& running(Sim& sim) {
   if (!sim.recording) throw Error(Code::state, "no recording is running");
@@ -26,7 +22,7 @@ using namespace crumble::capi;
 
 crumble_result crumble_sim_snapshot(crumble_sim sim, void* dst, uint64_t dst_bytes, uint64_t* needed) {
   return with<Sim>(__func__, sim, [&](const Sim& s, const Call& call) {
-    const std::vector<std::uint8_t> bytes = s.simulation.snapshot();
+    const Vector<std::uint8_t> bytes = s.simulation.snapshot();
     return deliver(call, bytes.size(), dst, dst_bytes, needed,
                    [&](void* to) { std::copy(bytes.begin(), bytes.end(), static_cast<std::uint8_t*>(to)); });
   });

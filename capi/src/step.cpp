@@ -1,66 +1,23 @@
-// What a servo loop calls. A step fails without memory: not by exceptions, whose texts take some.
+// What a servo loop calls.
 #include <algorithm>
-#include <cmath>
 
 #include "defs.hpp"
 #include "kernels.hpp"
-#include "objects.hpp"
-#include "rigid.hpp"
+#include "stepping.hpp"
 
 namespace crumble::capi {
 namespace {
-
-crumble_result fail_bad_pose(const Call& call, const crumble_pose* poses, std::uint32_t count) noexcept {
-  for (std::uint32_t tool = 0; tool < count; ++tool) {
-    const crumble_pose& pose = poses[tool];
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      if (!std::isfinite(pose.position[i])) {
-        return call.fail(CRUMBLE_E_BAD_POSE, {"pose ", tool, ": position[", i, "] is ", pose.position[i]});
-      }
-    }
-    if (is_valid(to_pose(pose))) continue;
-    const double* q = pose.orientation;
-    return call.fail(CRUMBLE_E_BAD_POSE, {"pose ", tool, ": orientation is no unit quaternion: ", q[0], ", ", q[1],
-                                          ", ", q[2], ", ", q[3]});
-  }
-  return call.fail(CRUMBLE_E_BAD_POSE, {"pose"});
-}
-
-// The step itself has been done, so only the recording can be given up.
-crumble_result record(Sim& sim, const Call& call) noexcept {
-  try {
-    sim.recording->add(sim.poses, sim.simulation.state_hash());
-    return CRUMBLE_OK;
-  } catch (...) {
-    sim.recording.reset();
-    return call.fail(CRUMBLE_E_NO_MEMORY, {"the step is done, but its recording found no memory and was dropped"});
-  }
-}
-
-crumble_result advance(Sim& sim, const Call& call, const crumble_pose* poses, std::uint32_t count) noexcept {
-  if (sim.poses.size() != count) {
-    return call.fail(CRUMBLE_E_OUT_OF_RANGE,
-                     {"tool_count is ", count, ", the simulation has ", std::uint64_t{sim.poses.size()}});
-  }
-  std::transform(poses, poses + count, sim.poses.begin(), to_pose);
-  const StepInfo& info = sim.simulation.step(sim.poses);
-  for (const auto& link : sim.readers) link->publisher.publish(sim.simulation);
-  if (info.status == Code::bad_pose) return fail_bad_pose(call, poses, count);
-  if (info.status == Code::diverged) {
-    return call.fail(CRUMBLE_E_DIVERGED,
-                     {"node ", info.bad_node, " left the world in step ", info.step + 1, ": reset the simulation"});
-  }
-  return sim.recording ? record(sim, call) : CRUMBLE_OK;
-}
 
 crumble_result step_tools(const char* function, crumble_sim sim, const crumble_pose* poses, crumble_wrench* wrenches,
                           std::uint32_t count) noexcept {
   // before anything can fail: a loop that ignores results must not go on with an old force
   if (wrenches) std::fill_n(wrenches, count, crumble_wrench{});
   return with<Sim>(function, sim, [&](Sim& s, const Call& call) -> crumble_result {
-    if (count > 0 && !poses) return call.fail(CRUMBLE_E_NULL, {"pose must not be NULL"});
-    if (count > 0 && !wrenches) return call.fail(CRUMBLE_E_NULL, {"wrench must not be NULL"});
-    const crumble_result result = advance(s, call, poses, count);
+    crumble_result result = take_poses(s, call, poses, wrenches, count);
+    if (result != CRUMBLE_OK) return result;
+    s.simulation.step(s.poses);
+    result = judge(s, call, poses, count);
+    if (const crumble_result told = tell_step(s, call, s.poses); result == CRUMBLE_OK) result = told;
     if (result != CRUMBLE_OK) return result;
     for (std::uint32_t tool = 0; tool < count; ++tool) wrenches[tool] = to_c(s.simulation.wrench(tool));
     return CRUMBLE_OK;
@@ -82,6 +39,7 @@ crumble_step_info to_c(const StepInfo& info) {
 static_assert(std::uint32_t{CRUMBLE_STEP_TOOL_JUMPED} == kToolJumped);
 static_assert(std::uint32_t{CRUMBLE_STEP_CONTACT_SUSPENDED} == kContactSuspended);
 static_assert(std::uint32_t{CRUMBLE_STEP_GUARDED} == kGuarded);
+static_assert((CRUMBLE_STEP_DROPPED & (kToolJumped | kContactSuspended | kGuarded)) == 0);
 
 crumble_counters to_c(const Counters& counters) {
   crumble_counters out{};
@@ -95,6 +53,7 @@ crumble_counters to_c(const Counters& counters) {
   out.woken = counters.woken;
   out.removed = counters.removed;
   out.removed_nodes = counters.removed_nodes;
+  out.dropped_steps = counters.dropped_steps;
   return out;
 }
 
@@ -148,6 +107,17 @@ crumble_result crumble_sim_get_step_info(crumble_sim sim, crumble_step_info* inf
 crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters* counters) {
   return with<Sim>(__func__, sim, [&](const Sim& s, const Call&) {
     write_struct("counters", counters, to_c(s.simulation.counters()));
+    return CRUMBLE_OK;
+  });
+}
+
+crumble_result crumble_sim_get_energy(crumble_sim sim, crumble_energy* energy) {
+  return with<Sim>(__func__, sim, [&](const Sim& s, const Call& call) -> crumble_result {
+    if (!s.simulation.definition().step.energy_audit) return call.fail(CRUMBLE_E_STATE, {"energy_audit is 0"});
+    const crumble::EnergyLedger& ledger = s.simulation.ledger();
+    write_struct("energy", energy,
+                 crumble_energy{0, 0, ledger.stored, ledger.tool_work, ledger.external_work, ledger.dissipated,
+                                ledger.cut, ledger.gain_max_relative});
     return CRUMBLE_OK;
   });
 }

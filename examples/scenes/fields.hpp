@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble {
@@ -23,10 +23,10 @@ class Fields {
     return node_.at(key);
   }
   Fields object(const std::string& key) { return {at(key), name(key)}; }
-  std::vector<Fields> objects(const std::string& key) {
+  Vector<Fields> objects(const std::string& key) {
     const nlohmann::json& value = at(key);
     if (!value.is_array()) fail(name(key), "must be a list, is " + shown(value));
-    std::vector<Fields> all;
+    Vector<Fields> all;
     for (std::size_t i = 0; i < value.size(); ++i)
       all.emplace_back(value[i], name(key) + "[" + std::to_string(i) + "]");
     return all;
@@ -51,10 +51,10 @@ class Fields {
     return static_cast<std::uint32_t>(value);
   }
   /// A list of whole numbers below `limit`.
-  std::vector<std::uint32_t> counts(const std::string& key, std::size_t limit) {
+  Vector<std::uint32_t> counts(const std::string& key, std::size_t limit) {
     const nlohmann::json& value = at(key);
     if (!value.is_array()) fail(name(key), "must be a list, is " + shown(value));
-    std::vector<std::uint32_t> all;
+    Vector<std::uint32_t> all;
     for (const nlohmann::json& each : value) {
       if (!each.is_number_unsigned() || each.get<std::uint64_t>() >= limit) {
         fail(name(key) + "[" + std::to_string(all.size()) + "]",

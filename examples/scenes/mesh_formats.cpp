@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "crumble/base/memory.hpp"
 #include "scenes/text_lines.hpp"
 
 namespace crumble {
@@ -63,7 +64,7 @@ TriangleMesh parse_obj(std::string_view bytes) {
   while (lines.next()) {
     if (lines.starts_with("v")) mesh.vertices.push_back(lines.point(1));
     if (!lines.starts_with("f")) continue;
-    std::vector<std::uint32_t> corners;
+    Vector<std::uint32_t> corners;
     for (std::size_t i = 1; i < lines.words().size(); ++i) {
       const std::string_view word = lines.words()[i];
       const double index = parse_double(word.substr(0, word.find('/'))).value_or(0);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <optional>
 
+#include "crumble/base/memory.hpp"
 #include "scenes/mesh_formats.hpp"
 #include "scenes/text_lines.hpp"
 
@@ -31,12 +32,12 @@ struct Property {
 struct Element {
   std::string name;
   std::size_t count;
-  std::vector<Property> properties;
+  Vector<Property> properties;
 };
 
 struct Header {
   bool text = false, big_endian = false;
-  std::vector<Element> elements;
+  Vector<Element> elements;
   std::size_t end = 0;  // in bytes
 };
 
@@ -61,7 +62,7 @@ Header read_header(std::string_view bytes) {
   if (!lines.next() || !lines.starts_with("ply")) throw Error(Code::format, "it does not begin with 'ply'");
   Header header;
   while (lines.next()) {
-    const std::vector<std::string_view>& words = lines.words();
+    const Vector<std::string_view>& words = lines.words();
     if (words[0] == "end_header") {
       header.end = lines.at();
       return header;
@@ -149,8 +150,8 @@ Vec3 read_vertex(const Element& element, Values& values) {
   return place;
 }
 
-std::vector<std::uint32_t> read_face(const Element& element, std::size_t vertex_count, Values& values) {
-  std::vector<std::uint32_t> corners;
+Vector<std::uint32_t> read_face(const Element& element, std::size_t vertex_count, Values& values) {
+  Vector<std::uint32_t> corners;
   for (const Property& property : element.properties) {
     const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
     std::size_t left = property.count ? read_count(values, *property.count) : 1;

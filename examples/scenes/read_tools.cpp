@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
 #include "crumble/geometry/tool_solids.hpp"
@@ -117,8 +118,8 @@ WorkspaceOptions read_workspace(Fields fields) {
   return workspace;
 }
 
-std::vector<PathPoint> read_path(Fields& motion) {
-  std::vector<PathPoint> points;
+Vector<PathPoint> read_path(Fields& motion) {
+  Vector<PathPoint> points;
   for (Fields& fields : motion.objects("path")) {
     PathPoint point;
     point.time = fields.number("time");
@@ -206,8 +207,8 @@ Friction read_friction(Fields fields) {
   return friction;
 }
 
-std::vector<std::uint32_t> read_region(Fields fields, const TetMesh& mesh) {
-  std::vector<std::uint32_t> nodes;
+Vector<std::uint32_t> read_region(Fields fields, const TetMesh& mesh) {
+  Vector<std::uint32_t> nodes;
   if (fields.has("box")) {
     Fields box = fields.object("box");
     const Vec3 low = box.vector("low"), high = box.vector("high");

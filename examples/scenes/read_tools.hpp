@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "crumble/base/memory.hpp"
 #include "scenes/fields.hpp"
 #include "scenes/scene.hpp"
 
@@ -16,6 +17,6 @@ void read_attachments(Fields& scene_fields, Scene& scene);
 
 Friction read_friction(Fields fields);
 /// A box, a half-space or a list, as nodes of `mesh`, ascending.
-std::vector<std::uint32_t> read_region(Fields fields, const TetMesh& mesh);
+Vector<std::uint32_t> read_region(Fields fields, const TetMesh& mesh);
 
 }  // namespace crumble

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "scenes/embedded.hpp"
@@ -84,12 +85,12 @@ DragFrame read_drag_frame(Fields& scene) {
   Fields::fail(scene.name("drag_frame"), "must be fragment or room, is " + name);
 }
 
-std::vector<std::uint32_t> read_fixed(Fields& scene, const TetMesh& mesh) {
-  std::vector<std::uint32_t> nodes;
+Vector<std::uint32_t> read_fixed(Fields& scene, const TetMesh& mesh) {
+  Vector<std::uint32_t> nodes;
   if (scene.has("fixed_below")) nodes = nodes_below(mesh, scene.number("fixed_below"));
   if (scene.has("fixed")) {
     for (Fields& region : scene.objects("fixed")) {
-      const std::vector<std::uint32_t> more = read_region(std::move(region), mesh);
+      const Vector<std::uint32_t> more = read_region(std::move(region), mesh);
       nodes.insert(nodes.end(), more.begin(), more.end());
     }
   }
@@ -163,8 +164,8 @@ Scene load_scene(const std::string& name, Preset preset) {
   }
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
+Vector<std::string> scene_names() {
+  Vector<std::string> names;
   for (const std::string_view file : embedded_names()) {
     if (file.ends_with(".json")) names.emplace_back(file.substr(0, file.size() - 5));
   }

@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/open.hpp"
 #include "crumble/device/workspace.hpp"
 #include "crumble/sim/simulation.hpp"
@@ -21,8 +21,8 @@ enum class Preset { standard, paper };
 /// presses.
 struct Motion {
   Pose start;
-  PressOptions press;           // from `start`
-  std::vector<PathPoint> path;  // from `start`
+  PressOptions press;      // from `start`
+  Vector<PathPoint> path;  // from `start`
   std::optional<Trajectory> trajectory;
   WorkspaceOptions workspace;  // from the trajectory's frame to the scene
   ReplayOptions replay;
@@ -33,9 +33,9 @@ struct Scene {
   std::string description;
   SimulationDef def;  // one tool at least
   MeshQuality quality;
-  std::vector<std::string> warnings;  // of the mesh generator
-  std::vector<Motion> motions;        // of the tools, then of the attachments
-  double top = 0;                     // y of the highest node at rest, metres: where a tool's depth is 0
+  Vector<std::string> warnings;  // of the mesh generator
+  Vector<Motion> motions;        // of the tools, then of the attachments
+  double top = 0;                // y of the highest node at rest, metres: where a tool's depth is 0
 
   /// Simulated seconds that a tick of a device takes.
   double tick() const { return def.step.tau * def.step.iterations; }
@@ -49,7 +49,7 @@ Scene load_scene(const std::string& name, Preset preset);
 /// A trajectory by built-in name ("press_1mm_s") or path of a .ctraj file.
 Trajectory load_trajectory(const std::string& name);
 
-std::vector<std::string> scene_names();
+Vector<std::string> scene_names();
 
 /// A device that makes a motion, and how long it does.
 struct MotionDevice {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
@@ -28,7 +28,7 @@ class TextLines {
     }
     return !words_.empty();
   }
-  const std::vector<std::string_view>& words() const { return words_; }
+  const Vector<std::string_view>& words() const { return words_; }
   bool starts_with(std::string_view word) const { return words_[0] == word; }
   /// Where the next line begins, in bytes.
   std::size_t at() const { return std::min(at_, text_.size()); }
@@ -60,11 +60,11 @@ class TextLines {
 
   std::string_view text_;
   std::size_t at_ = 0, number_ = 0;
-  std::vector<std::string_view> words_;
+  Vector<std::string_view> words_;
 };
 
 /// A polygon as triangles about its first corner.
-inline void add_polygon(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {
+inline void add_polygon(const Vector<std::uint32_t>& corners, Vector<Triangle>& triangles) {
   for (std::size_t i = 2; i < corners.size(); ++i) triangles.push_back({corners[0], corners[i - 1], corners[i]});
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "scenes/mesh_formats.hpp"
 
 namespace crumble {
@@ -42,7 +43,7 @@ std::string read_bounded(const std::filesystem::path& file) {
 TriangleMesh welded(const TriangleMesh& mesh, double scale) {
   TriangleMesh out;
   std::map<std::array<double, 3>, std::uint32_t> known;
-  std::vector<std::uint32_t> index;
+  Vector<std::uint32_t> index;
   for (const Vec3& v : mesh.vertices) {
     const Vec3 place = scale * v;
     const auto [at, is_new] = known.try_emplace({place.x() + 0.0, place.y() + 0.0, place.z() + 0.0},

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -32,8 +33,8 @@ Bytes read_whole(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
-  return read_whole<std::vector<std::uint8_t>>(path);
+Vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
+  return read_whole<Vector<std::uint8_t>>(path);
 }
 
 std::string read_text(const std::filesystem::path& path) {

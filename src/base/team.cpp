@@ -20,10 +20,10 @@
 #include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -109,7 +109,7 @@ class Bed {
 
 }  // namespace
 
-struct Team::State {
+struct Team::State : Allocated {
   // The tasks that one thread takes first. Its data are then in its own cache from the last job; the others help when
   // they have done theirs.
   struct alignas(64) Block {
@@ -118,7 +118,7 @@ struct Team::State {
   };
 
   ParallelFor host;
-  std::vector<std::thread> workers;
+  Vector<std::thread> workers;
   std::array<Block, kMaxThreads> blocks;
   void (*task)(void*, std::uint32_t) = nullptr;
   void* data = nullptr;

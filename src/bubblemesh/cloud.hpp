@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
@@ -11,9 +11,9 @@ namespace crumble {
 
 /// Three groups in this order: features (corners, then creases), surface, inside. Features never move.
 struct Cloud {
-  std::vector<Vec3> positions;  // metres
-  std::vector<NodeKind> kinds;
-  std::vector<Vec3> normals;  // outward unit vector at surface nodes, zero elsewhere
+  Vector<Vec3> positions;  // metres
+  Vector<NodeKind> kinds;
+  Vector<Vec3> normals;  // outward unit vector at surface nodes, zero elsewhere
   std::size_t feature_count = 0;
   std::size_t surface_count = 0;  // features + surface
 
@@ -26,7 +26,7 @@ struct Cloud {
     if (kind <= NodeKind::surface) ++surface_count;
   }
   /// Keeps the nodes with keep[i], in their order.
-  void select(const std::vector<char>& keep) {
+  void select(const Vector<char>& keep) {
     Cloud kept;
     for (std::size_t i = 0; i < size(); ++i) {
       if (keep[i]) kept.add(positions[i], kinds[i], normals[i]);

@@ -19,6 +19,7 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
@@ -60,7 +61,7 @@ class FaceMatcher {
     std::uint64_t key = 0, round = 0;
     Face face;
   };
-  std::vector<Slot> slots_;
+  Vector<Slot> slots_;
   std::uint64_t round_ = 0;
 };
 
@@ -88,8 +89,8 @@ class Triangulation {
     fill_cavity(p);
   }
 
-  std::vector<Tetrahedron> tetrahedra(std::uint32_t point_count) const {
-    std::vector<Tetrahedron> result;
+  Vector<Tetrahedron> tetrahedra(std::uint32_t point_count) const {
+    Vector<Tetrahedron> result;
     for (const Cell& cell : cells_) {
       if (std::ranges::all_of(cell.vertex, [&](std::uint32_t v) { return v < point_count; }))
         result.push_back(cell.vertex);
@@ -190,14 +191,14 @@ class Triangulation {
     cells_[other.cell].neighbour[other.index] = cell;
   }
 
-  std::vector<GridPoint> points_;
-  std::vector<Cell> cells_;  // a free one has no vertices
-  std::vector<std::uint32_t> free_;
-  std::vector<std::uint64_t> seen_;
+  Vector<GridPoint> points_;
+  Vector<Cell> cells_;  // a free one has no vertices
+  Vector<std::uint32_t> free_;
+  Vector<std::uint64_t> seen_;
   std::uint64_t stamp_ = 0;
   std::uint32_t last_ = 0;
-  std::vector<std::uint32_t> cavity_;
-  std::vector<Wall> walls_;
+  Vector<std::uint32_t> cavity_;
+  Vector<Wall> walls_;
   FaceMatcher matcher_;
 };
 
@@ -211,14 +212,14 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 /// Half of the points in the last round, half of the rest in the one before it, ...; Morton order in a round.
-std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
+Vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
   struct Key {
     int round;
     std::uint64_t morton;
     std::uint32_t index;
     auto operator<=>(const Key&) const = default;
   };
-  std::vector<Key> keys;
+  Vector<Key> keys;
   Random random(1);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto code = [](std::int32_t x) { return spread(static_cast<std::uint64_t>(x) >> 1); };
@@ -226,14 +227,14 @@ std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
     keys.push_back({-std::countr_zero(random.next()), code(p.x) | code(p.y) << 1 | code(p.z) << 2, i});
   }
   std::ranges::sort(keys);
-  std::vector<std::uint32_t> order;
+  Vector<std::uint32_t> order;
   for (const Key& key : keys) order.push_back(key.index);
   return order;
 }
 
 }  // namespace
 
-std::vector<GridPoint> quantize(std::span<const Vec3> points) {
+Vector<GridPoint> quantize(std::span<const Vec3> points) {
   // The six corners of an octahedron of the perfect lattice are cospherical and each of its three diagonals gives
   // Delaunay tetrahedra. Looking at the points a little squeezed along the layers, across the rows, makes the diagonal
   // without an x component the shortest everywhere: all octahedra are cut alike, and rows keep constant neighbour
@@ -244,7 +245,7 @@ std::vector<GridPoint> quantize(std::span<const Vec3> points) {
   for (const Vec3& p : points) lower = lower.cwiseMin(p), upper = upper.cwiseMax(p);
   const Vec3 size = upper - lower;
   const double scale = kCube / 2 / std::max({size.x(), size.y(), size.z()});
-  std::vector<GridPoint> grid;
+  Vector<GridPoint> grid;
   grid.reserve(points.size());
   for (const Vec3& p : points) {
     const Vec3 q = scale * (p - lower);
@@ -254,7 +255,7 @@ std::vector<GridPoint> quantize(std::span<const Vec3> points) {
   return grid;
 }
 
-std::vector<Tetrahedron> delaunay(std::span<const GridPoint> points) {
+Vector<Tetrahedron> delaunay(std::span<const GridPoint> points) {
   Triangulation triangulation(points);
   for (const std::uint32_t p : insertion_order(points)) triangulation.insert(p);
   return triangulation.tetrahedra(static_cast<std::uint32_t>(points.size()));

@@ -6,6 +6,7 @@
 
 #include "bubblemesh/neighbour_grid.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -21,18 +22,18 @@ NeighbourGrid grid_of(const Shape& shape, double spacing, const Cloud& cloud) {
   return grid;
 }
 
-std::vector<std::size_t> highest_first(const std::vector<double>& scores) {
-  std::vector<std::size_t> order(scores.size());
+Vector<std::size_t> highest_first(const Vector<double>& scores) {
+  Vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
   return order;
 }
 
 /// Up to `number` points, the highest scores first, none within the other's reach.
-std::vector<std::size_t> choose(const Shape& shape, double spacing, const std::vector<Vec3>& points,
-                                const std::vector<double>& scores, std::size_t number) {
+Vector<std::size_t> choose(const Shape& shape, double spacing, const Vector<Vec3>& points, const Vector<double>& scores,
+                           std::size_t number) {
   NeighbourGrid taken(shape.lower(), shape.upper(), kReach * spacing);
-  std::vector<std::size_t> chosen;
+  Vector<std::size_t> chosen;
   for (const std::size_t i : highest_first(scores)) {
     if (chosen.size() == number) break;
     if (!taken.is_free(points[i], kReach * spacing)) continue;
@@ -44,24 +45,24 @@ std::vector<std::size_t> choose(const Shape& shape, double spacing, const std::v
 
 void remove_crowded(const Shape& shape, double spacing, std::size_t first, std::size_t number, Cloud& cloud) {
   const NeighbourGrid grid = grid_of(shape, spacing, cloud);
-  const std::vector<Vec3> points(cloud.positions.begin() + static_cast<std::ptrdiff_t>(first), cloud.positions.end());
-  std::vector<double> crowding(points.size(), 0);
+  const Vector<Vec3> points(cloud.positions.begin() + static_cast<std::ptrdiff_t>(first), cloud.positions.end());
+  Vector<double> crowding(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     grid.for_each_within(points[i], kReach * spacing, [&](std::uint32_t j, double squared) {
       const double room = kReach - std::sqrt(squared) / spacing;
       if (j != first + i) crowding[i] += room * room;
     });
   }
-  std::vector<char> keep(cloud.size(), 1);
+  Vector<char> keep(cloud.size(), 1);
   for (const std::size_t i : choose(shape, spacing, points, crowding, number)) keep[first + i] = 0;
   cloud.select(keep);
 }
 
 void insert_in_gaps(const Shape& shape, double spacing, NodeKind kind, std::size_t number,
-                    const std::vector<SurfacePoint>& places, Cloud& cloud) {
+                    const Vector<SurfacePoint>& places, Cloud& cloud) {
   const NeighbourGrid grid = grid_of(shape, spacing, cloud);
-  std::vector<Vec3> points;
-  std::vector<double> gaps;
+  Vector<Vec3> points;
+  Vector<double> gaps;
   for (const SurfacePoint& place : places) {
     points.push_back(place.point);
     gaps.push_back(grid.nearest_squared(place.point, kReach * spacing));
@@ -79,7 +80,7 @@ double cube_root(double x) {
 }  // namespace
 
 void match_count(std::string_view field, const Shape& shape, double spacing, std::size_t first, std::uint32_t wanted,
-                 const std::vector<SurfacePoint>& places, Cloud& cloud, const std::function<void(int, double)>& relax) {
+                 const Vector<SurfacePoint>& places, Cloud& cloud, const std::function<void(int, double)>& relax) {
   const NodeKind kind = first == cloud.surface_count ? NodeKind::inside : NodeKind::surface;
   const auto present = [&] {
     return kind == NodeKind::surface ? cloud.surface_count : cloud.size() - cloud.surface_count;

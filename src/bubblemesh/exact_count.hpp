@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <string_view>
-#include <vector>
 
 #include "bubblemesh/cloud.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 
 namespace crumble {
@@ -15,6 +15,6 @@ namespace crumble {
 /// and relaxes, until the cloud's last group (surface or inside; the surface counts its features) has `wanted` nodes.
 /// Throws Error(out_of_range) naming `field` when `wanted` lies outside 0.6 to 1.5 times the present number.
 void match_count(std::string_view field, const Shape& shape, double spacing, std::size_t first, std::uint32_t wanted,
-                 const std::vector<SurfacePoint>& places, Cloud& cloud, const std::function<void(int, double)>& relax);
+                 const Vector<SurfacePoint>& places, Cloud& cloud, const std::function<void(int, double)>& relax);
 
 }  // namespace crumble

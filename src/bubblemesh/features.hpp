@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bubblemesh/cloud.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 
 namespace crumble {
@@ -14,7 +15,6 @@ struct CreaseEdge {
 
 /// A node on each corner; each crease cut into equal pieces of about `spacing`, and extra_pieces[crease] more. Equal
 /// pieces are where bubbles on a line come to rest, so no relaxation is needed.
-std::vector<CreaseEdge> place_features(const Shape& shape, double spacing, const std::vector<int>& extra_pieces,
-                                       Cloud& cloud);
+Vector<CreaseEdge> place_features(const Shape& shape, double spacing, const Vector<int>& extra_pieces, Cloud& cloud);
 
 }  // namespace crumble

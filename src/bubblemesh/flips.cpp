@@ -10,6 +10,8 @@
 
 #include <limits>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -109,7 +111,7 @@ class EdgeRemoval {
   double worst_;  // what a new tetrahedron has to beat
   std::array<std::array<double, Ring::kMost>, Ring::kMost> best_;
   std::array<std::array<std::size_t, Ring::kMost>, Ring::kMost> split_;
-  std::vector<Tetrahedron> made_;
+  Vector<Tetrahedron> made_;
 };
 
 }  // namespace

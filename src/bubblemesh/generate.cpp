@@ -15,6 +15,7 @@
 #include "bubblemesh/restrict.hpp"
 #include "bubblemesh/row_order.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble {
@@ -76,7 +77,7 @@ void require_valid(const TetMesh& mesh, const MeshQuality& quality) {
   }
   if (quality.euler_defect != 0)
     fail("it is not one solid ball (Euler defect " + std::to_string(quality.euler_defect) + ")");
-  std::vector<char> on_boundary(mesh.node_count(), 0);
+  Vector<char> on_boundary(mesh.node_count(), 0);
   for (const Triangle& t : mesh.boundary) {
     for (const std::uint32_t v : t) on_boundary[v] = 1;
   }
@@ -90,8 +91,8 @@ void require_valid(const TetMesh& mesh, const MeshQuality& quality) {
 /// Nodes and tetrahedra before improvement.
 struct Draft {
   Cloud cloud;
-  std::vector<CreaseEdge> crease_edges;
-  std::vector<Tetrahedron> tetrahedra;
+  Vector<CreaseEdge> crease_edges;
+  Vector<Tetrahedron> tetrahedra;
 };
 
 void populate(const Shape& shape, const BubbleMeshOptions& options, const LatticeFrame& frame, Cloud& cloud) {
@@ -103,7 +104,7 @@ void populate(const Shape& shape, const BubbleMeshOptions& options, const Lattic
 Draft make_draft(const Shape& shape, const BubbleMeshOptions& options, const LatticeFrame& frame) {
   const double d = options.spacing;
   const bool exact = options.surface_nodes.has_value();
-  std::vector<int> extra_pieces(shape.creases().size(), 0);
+  Vector<int> extra_pieces(shape.creases().size(), 0);
   Draft draft;
   for (int round = 0; round < kRepairRounds; ++round) {
     if (draft.cloud.size() == 0) {
@@ -128,7 +129,7 @@ Draft make_draft(const Shape& shape, const BubbleMeshOptions& options, const Lat
 }
 
 /// Mesh, quality and what the caller has to know.
-BubbleMesh finish(const Shape& shape, double spacing, Cloud cloud, std::vector<Tetrahedron> tetrahedra) {
+BubbleMesh finish(const Shape& shape, double spacing, Cloud cloud, Vector<Tetrahedron> tetrahedra) {
   BubbleMesh result;
   result.mesh = make_tet_mesh(std::move(cloud.positions), std::move(tetrahedra), std::move(cloud.kinds));
   result.quality = measure_quality(result.mesh);

@@ -22,6 +22,7 @@
 #include "bubblemesh/measures.hpp"
 #include "bubblemesh/relax.hpp"
 #include "bubblemesh/smooth.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -41,7 +42,7 @@ constexpr int kDetourSteps = 40;
 
 class Improver {
  public:
-  Improver(const Shape& shape, double spacing, Cloud& cloud, std::vector<Tetrahedron> tetrahedra)
+  Improver(const Shape& shape, double spacing, Cloud& cloud, Vector<Tetrahedron> tetrahedra)
       : shape_(shape), spacing_(spacing), cloud_(cloud), tets_(cloud.size(), std::move(tetrahedra)) {
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
       if (-shape.signed_distance(cloud.positions[i]) < kRelaxedDepth * spacing) movable_.push_back(i);
@@ -57,7 +58,7 @@ class Improver {
       if (!even && !changed) break;
     }
   }
-  std::vector<Tetrahedron> tetrahedra() const { return tets_.tetrahedra(); }
+  Vector<Tetrahedron> tetrahedra() const { return tets_.tetrahedra(); }
 
  private:
   struct Bad {
@@ -66,8 +67,8 @@ class Improver {
     auto operator<=>(const Bad&) const = default;
   };
 
-  std::vector<Bad> bad_ones(const Stage& stage) const {
-    std::vector<Bad> list;
+  Vector<Bad> bad_ones(const Stage& stage) const {
+    Vector<Bad> list;
     for (TetId t = 0; t < tets_.slot_count(); ++t) {
       if (!tets_.alive(t)) continue;
       const double quality = quality_of(cloud_, stage.measure, tets_[t]);
@@ -81,7 +82,7 @@ class Improver {
     std::uint32_t node;
     Vec3 position, normal;  // before
   };
-  using Moves = std::vector<Move>;
+  using Moves = Vector<Move>;
 
   using Work = bool (Improver::*)(Measure, TetId);
   bool on_bad_ones(const Stage& stage, Work work) {
@@ -139,7 +140,7 @@ class Improver {
   /// Mends what the detour's first flip has spoilt, until all that was touched is better than `goal`.
   bool finish_detour(Measure measure, double goal, Moves& moves) {
     for (int step = 0; step < kDetourSteps; ++step) {
-      std::vector<TetId> touched = tets_.new_in_trial();
+      Vector<TetId> touched = tets_.new_in_trial();
       for (const Move& move : moves) {
         const auto star = tets_.star(move.node);
         touched.insert(touched.end(), star.begin(), star.end());
@@ -157,12 +158,12 @@ class Improver {
   double spacing_;
   Cloud& cloud_;
   TetComplex tets_;
-  std::vector<std::uint32_t> movable_;
+  Vector<std::uint32_t> movable_;
 };
 
 }  // namespace
 
-void improve(const Shape& shape, double spacing, Cloud& cloud, std::vector<Tetrahedron>& tetrahedra) {
+void improve(const Shape& shape, double spacing, Cloud& cloud, Vector<Tetrahedron>& tetrahedra) {
   Improver improver(shape, spacing, cloud, std::move(tetrahedra));
   for (const Stage& stage : kStages) improver.run(stage);
   tetrahedra = improver.tetrahedra();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bubblemesh/square_lattice.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 
 namespace crumble {
@@ -51,7 +52,7 @@ class LatticeBody {
   double spacing_;
   Vec3 middle_;
   bool upright_;
-  std::vector<Vec3> upright_creases_;  // a point on each
+  Vector<Vec3> upright_creases_;  // a point on each
   SquareLattice lattice_;
   Site first_, last_;
 };

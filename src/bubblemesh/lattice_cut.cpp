@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "bubblemesh/measures.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -45,7 +46,7 @@ class SiteTable {
  private:
   Site first_;
   std::size_t rows_, places_;
-  std::vector<Where> where_;
+  Vector<Where> where_;
 };
 
 template <class Visit>
@@ -62,7 +63,7 @@ SiteTable draw_onto_side(const LatticeBody& body, double spacing) {
     double distance;
     Site site;
   };
-  std::vector<Near> near;
+  Vector<Near> near;
   SiteTable table(body.first(), body.last());
   for_each_site(body.first(), body.last(), [&](const Site& s) {
     const Vec3 p = body.point(s);
@@ -193,11 +194,11 @@ class CellCutter {
   }
 
   void drop_unused_nodes() {
-    std::vector<char> used(result_.sites.size(), 0);
+    Vector<char> used(result_.sites.size(), 0);
     for (const Tetrahedron& t : result_.tetrahedra) {
       for (const std::uint32_t v : t) used[v] = 1;
     }
-    std::vector<std::uint32_t> new_index(used.size(), kNone);
+    Vector<std::uint32_t> new_index(used.size(), kNone);
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
@@ -213,8 +214,8 @@ class CellCutter {
 
   const LatticeBody& body_;
   const SiteTable& table_;
-  std::vector<std::uint32_t> nodes_;  // of each site
-  std::vector<char> on_side_, on_crease_;
+  Vector<std::uint32_t> nodes_;  // of each site
+  Vector<char> on_side_, on_crease_;
   LatticeCut result_;
 };
 

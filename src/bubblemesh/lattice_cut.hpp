@@ -3,13 +3,14 @@
 
 #include "bubblemesh/cloud.hpp"
 #include "bubblemesh/lattice_body.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 struct LatticeCut {
   Cloud cloud;  // nodes in row order
-  std::vector<Site> sites;
-  std::vector<Tetrahedron> tetrahedra;
+  Vector<Site> sites;
+  Vector<Tetrahedron> tetrahedra;
 };
 LatticeCut cut_lattice(const LatticeBody& body, double spacing);
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble {
@@ -80,8 +80,8 @@ class NeighbourGrid {
   Vec3 lower_;
   double cell_;
   std::array<int, 3> count_{};
-  std::vector<std::uint32_t> heads_;
-  std::vector<Entry> entries_;
+  Vector<std::uint32_t> heads_;
+  Vector<Entry> entries_;
 };
 
 }  // namespace crumble

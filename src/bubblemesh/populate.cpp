@@ -5,6 +5,7 @@
 #include "bubblemesh/exact_count.hpp"
 #include "bubblemesh/neighbour_grid.hpp"
 #include "bubblemesh/relax.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -31,7 +32,7 @@ NeighbourGrid make_grid(const Shape& shape, double spacing) {
 bool thin_out(const Shape& shape, double spacing, std::size_t first, Cloud& cloud) {
   const double near_surface = (first < cloud.surface_count ? kTooClose : kTooCloseInside) * spacing;
   NeighbourGrid fixed = make_grid(shape, spacing), kept = make_grid(shape, spacing);
-  std::vector<char> keep(cloud.size(), 1);
+  Vector<char> keep(cloud.size(), 1);
   bool changed = false;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3& p = cloud.positions[i];
@@ -43,7 +44,7 @@ bool thin_out(const Shape& shape, double spacing, std::size_t first, Cloud& clou
   return changed;
 }
 
-bool fill_gaps(const Shape& shape, double spacing, double gap, NodeKind kind, const std::vector<SurfacePoint>& places,
+bool fill_gaps(const Shape& shape, double spacing, double gap, NodeKind kind, const Vector<SurfacePoint>& places,
                Cloud& cloud) {
   NeighbourGrid grid = make_grid(shape, spacing);
   for (const Vec3& p : cloud.positions) grid.add(p, 0);
@@ -70,14 +71,14 @@ void for_each_fine_point(const Shape& shape, double spacing, double fineness, do
 }
 
 // Finer than inside: next to the small cap of a thin cylinder half a spacing was too coarse to hit the gap.
-std::vector<SurfacePoint> surface_places(const Shape& shape, double spacing) {
-  std::vector<SurfacePoint> places;
+Vector<SurfacePoint> surface_places(const Shape& shape, double spacing) {
+  Vector<SurfacePoint> places;
   for_each_fine_point(shape, spacing, 3, -0.3, 0.3, [&](const Vec3& p) { places.push_back(shape.project(p)); });
   return places;
 }
 
-std::vector<SurfacePoint> inside_places(const Shape& shape, double spacing) {
-  std::vector<SurfacePoint> places;
+Vector<SurfacePoint> inside_places(const Shape& shape, double spacing) {
+  Vector<SurfacePoint> places;
   for_each_fine_point(shape, spacing, 2, kTooCloseInside, 2.5, [&](const Vec3& p) {
     places.push_back({p, Vec3::Zero()});
   });
@@ -92,7 +93,7 @@ Carving carve(const Shape& shape, const LatticeFrame& frame) {
     double distance;
     Vec3 point;
   };
-  std::vector<Near> near;
+  Vector<Near> near;
   Carving carving;
   const Vec3 reach = Vec3::Constant(margin);
   frame.for_each_in(shape.lower() - reach, shape.upper() + reach, [&](const Vec3& p) {
@@ -109,10 +110,10 @@ Carving carve(const Shape& shape, const LatticeFrame& frame) {
 
 void populate_surface(const Shape& shape, double spacing, const Carving& carving, std::optional<std::uint32_t> exact,
                       Cloud& cloud) {
-  std::vector<SurfacePoint> carved;
+  Vector<SurfacePoint> carved;
   for (const Vec3& p : carving.near_surface) carved.push_back(shape.project(p));
   fill_gaps(shape, spacing, kTooClose, NodeKind::surface, carved, cloud);
-  const std::vector<SurfacePoint> places = surface_places(shape, spacing);
+  const Vector<SurfacePoint> places = surface_places(shape, spacing);
   const auto relax = [&](int iterations, double stretch = 1) {
     relax_surface(shape, stretch * spacing, iterations, cloud);
   };
@@ -131,7 +132,7 @@ void populate_inside(const Shape& shape, double spacing, const Carving& carving,
                      Cloud& cloud) {
   for (const Vec3& p : carving.inside) cloud.add(p, NodeKind::inside);
   thin_out(shape, spacing, cloud.surface_count, cloud);
-  const std::vector<SurfacePoint> places = inside_places(shape, spacing);
+  const Vector<SurfacePoint> places = inside_places(shape, spacing);
   const auto relax = [&](int iterations, double stretch = 1) {
     relax_inside(shape, stretch * spacing, iterations, cloud);
   };

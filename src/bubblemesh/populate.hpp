@@ -5,6 +5,7 @@
 
 #include "bubblemesh/cloud.hpp"
 #include "bubblemesh/lattice.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 
 namespace crumble {
@@ -13,8 +14,8 @@ namespace crumble {
 /// the surface when its centre is within 1.7 / 4.4 of a diameter of it, on either side: the paper's 1.7 mm at 4.4 mm
 /// balls, see docs/mesh.md.
 struct Carving {
-  std::vector<Vec3> near_surface;  // nearest to the surface first
-  std::vector<Vec3> inside;        // lattice order
+  Vector<Vec3> near_surface;  // nearest to the surface first
+  Vector<Vec3> inside;        // lattice order
 };
 Carving carve(const Shape& shape, const LatticeFrame& frame);
 

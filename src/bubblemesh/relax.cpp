@@ -16,6 +16,7 @@
 #include <span>
 
 #include "bubblemesh/neighbour_grid.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -58,12 +59,11 @@ class NeighbourLists {
   }
 
  private:
-  std::vector<std::size_t> starts_;
-  std::vector<std::uint32_t> neighbours_;
+  Vector<std::size_t> starts_;
+  Vector<std::uint32_t> neighbours_;
 };
 
-Vec3 force_on(const Vec3& p, std::span<const std::uint32_t> neighbours, const std::vector<Vec3>& positions,
-              double rest) {
+Vec3 force_on(const Vec3& p, std::span<const std::uint32_t> neighbours, const Vector<Vec3>& positions, double rest) {
   Vec3 force = Vec3::Zero();
   const double reach2 = kReach * kReach * rest * rest;
   for (const std::uint32_t j : neighbours) {
@@ -83,7 +83,7 @@ void relax(const Shape& shape, double rest, int iterations, std::span<const std:
            std::span<const std::uint32_t> active, Cloud& cloud, Flatten flatten, Constrain constrain) {
   const double radius = (kReach + kSkin) * rest, half_skin2 = 0.25 * kSkin * kSkin * rest * rest;
   const double longest = kLongestStep * rest;
-  std::vector<Vec3> velocities(active.size(), Vec3::Zero()), moved(active.size()), listed(active.size());
+  Vector<Vec3> velocities(active.size(), Vec3::Zero()), moved(active.size()), listed(active.size());
   std::optional<NeighbourLists> lists;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     if (!lists) {
@@ -112,7 +112,7 @@ void relax(const Shape& shape, double rest, int iterations, std::span<const std:
 }  // namespace
 
 void relax_surface(const Shape& shape, double spacing, int iterations, Cloud& cloud) {
-  std::vector<std::uint32_t> present(cloud.surface_count);
+  Vector<std::uint32_t> present(cloud.surface_count);
   std::iota(present.begin(), present.end(), 0u);
   const auto active = std::span(present).subspan(cloud.feature_count);
   const auto flatten = [&](std::uint32_t i, const Vec3& force) -> Vec3 {
@@ -128,9 +128,9 @@ void relax_surface(const Shape& shape, double spacing, int iterations, Cloud& cl
 
 void relax_inside(const Shape& shape, double spacing, int iterations, Cloud& cloud) {
   const double least = kLeastDepth * spacing;
-  std::vector<std::uint32_t> present(cloud.surface_count), active;
+  Vector<std::uint32_t> present(cloud.surface_count), active;
   std::iota(present.begin(), present.end(), 0u);
-  std::vector<double> depth(cloud.size());  // a lower bound: the distance is asked again only when it could matter
+  Vector<double> depth(cloud.size());  // a lower bound: the distance is asked again only when it could matter
   for (std::size_t i = cloud.surface_count; i < cloud.size(); ++i) {
     depth[i] = -shape.signed_distance(cloud.positions[i]);
     if (depth[i] < kFeltDepth * spacing) present.push_back(static_cast<std::uint32_t>(i));

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
 /// Boundary faces that touch a surface node. The others are not looked at: deep inside, no tetrahedron is ever dropped.
-std::vector<Triangle> boundary_near_surface(const Cloud& cloud, const std::vector<Tetrahedron>& tetrahedra) {
+Vector<Triangle> boundary_near_surface(const Cloud& cloud, const Vector<Tetrahedron>& tetrahedra) {
   const auto on_surface = [&](std::uint32_t v) { return cloud.kinds[v] != NodeKind::inside; };
-  std::vector<Triangle> faces;
+  Vector<Triangle> faces;
   for (const Tetrahedron& t : tetrahedra) {
     for (const auto& f : kTetFaces) {
       Triangle face{t[f[0]], t[f[1]], t[f[2]]};
@@ -18,7 +20,7 @@ std::vector<Triangle> boundary_near_surface(const Cloud& cloud, const std::vecto
     }
   }
   std::ranges::sort(faces);
-  std::vector<Triangle> single;
+  Vector<Triangle> single;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;
     while (end < faces.size() && faces[end] == faces[i]) ++end;
@@ -29,17 +31,16 @@ std::vector<Triangle> boundary_near_surface(const Cloud& cloud, const std::vecto
 }
 
 template <class T>
-void sort_unique(std::vector<T>& values) {
+void sort_unique(Vector<T>& values) {
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 }  // namespace
 
-Flaws find_flaws(const Cloud& cloud, const std::vector<CreaseEdge>& crease_edges,
-                 const std::vector<Tetrahedron>& tetrahedra) {
+Flaws find_flaws(const Cloud& cloud, const Vector<CreaseEdge>& crease_edges, const Vector<Tetrahedron>& tetrahedra) {
   Flaws flaws;
-  std::vector<Edge> edges;
+  Vector<Edge> edges;
   for (const Triangle& face : boundary_near_surface(cloud, tetrahedra)) {
     edges.insert(edges.end(), {{face[0], face[1]}, {face[0], face[2]}, {face[1], face[2]}});
     for (const std::uint32_t v : face) {
@@ -55,9 +56,9 @@ Flaws find_flaws(const Cloud& cloud, const std::vector<CreaseEdge>& crease_edges
   return flaws;
 }
 
-void bring_to_surface(const Shape& shape, const std::vector<std::uint32_t>& nodes, Cloud& cloud) {
-  std::vector<char> keep(cloud.size(), 1);
-  std::vector<SurfacePoint> places;
+void bring_to_surface(const Shape& shape, const Vector<std::uint32_t>& nodes, Cloud& cloud) {
+  Vector<char> keep(cloud.size(), 1);
+  Vector<SurfacePoint> places;
   for (const std::uint32_t node : nodes) {
     keep[node] = 0;
     places.push_back(shape.project(cloud.positions[node]));

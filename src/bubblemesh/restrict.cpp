@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bubblemesh/measures.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -37,7 +38,7 @@ bool fills(const Shape& shape, double spacing, const Cloud& cloud, const Tetrahe
 
 }  // namespace
 
-void restrict_to_shape(const Shape& shape, double spacing, const Cloud& cloud, std::vector<Tetrahedron>& tetrahedra) {
+void restrict_to_shape(const Shape& shape, double spacing, const Cloud& cloud, Vector<Tetrahedron>& tetrahedra) {
   std::erase_if(tetrahedra, [&](const Tetrahedron& t) { return !fills(shape, spacing, cloud, t); });
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -32,13 +34,13 @@ void add_node(std::int32_t layer, std::int32_t row, std::int32_t place, BubbleMe
 
 }  // namespace
 
-void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetrahedron>& tetrahedra) {
+void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, Vector<Tetrahedron>& tetrahedra) {
   struct Key {
     std::int64_t layer, row;
     double x;
     std::uint32_t node;
   };
-  std::vector<Key> keys;
+  Vector<Key> keys;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     const Vec3& p = cloud.positions[i];
     const std::int64_t layer = frame.nearest_layer(p);
@@ -46,7 +48,7 @@ void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetra
   }
   std::ranges::sort(keys, {}, [](const Key& key) { return std::tuple(key.layer, key.row, key.x, key.node); });
   Cloud sorted;
-  std::vector<std::uint32_t> new_index(cloud.size());
+  Vector<std::uint32_t> new_index(cloud.size());
   for (const Key& key : keys) {
     new_index[key.node] = static_cast<std::uint32_t>(sorted.size());
     sorted.add(cloud.positions[key.node], cloud.kinds[key.node], cloud.normals[key.node]);
@@ -58,13 +60,13 @@ void put_in_row_order(const LatticeFrame& frame, Cloud& cloud, std::vector<Tetra
   sort_tetrahedra(tetrahedra);
 }
 
-void sort_tetrahedra(std::vector<Tetrahedron>& tetrahedra) {
+void sort_tetrahedra(Vector<Tetrahedron>& tetrahedra) {
   for (Tetrahedron& t : tetrahedra) t = canonical(t);
   std::ranges::sort(tetrahedra);
 }
 
 void describe_rows(const LatticeFrame& frame, BubbleMesh& body) {
-  std::vector<char> on_lattice;
+  Vector<char> on_lattice;
   for (const Vec3& p : body.mesh.positions) {
     const std::int64_t layer = frame.nearest_layer(p), row = frame.nearest_row(p, layer);
     const std::int64_t place = frame.nearest_place(p, row, layer);
@@ -77,7 +79,7 @@ void describe_rows(const LatticeFrame& frame, BubbleMesh& body) {
   }
 }
 
-void describe_rows(const std::vector<Site>& sites, BubbleMesh& body) {
+void describe_rows(const Vector<Site>& sites, BubbleMesh& body) {
   for (const Site& site : sites) add_node(site.layer, site.row, site.place, body);
   for (const auto& [i, j] : body.mesh.springs)
     body.lattice_neighbours.push_back(are_lattice_neighbours(sites[i], sites[j]));
@@ -88,7 +90,7 @@ double share_in_runs(const TetMesh& mesh, std::size_t least) {
     std::uint32_t offset, first;
     auto operator<=>(const Step&) const = default;
   };
-  std::vector<Step> steps;
+  Vector<Step> steps;
   for (const auto& [i, j] : mesh.springs) steps.push_back({j - i, i});
   std::ranges::sort(steps);
   std::size_t in_runs = 0;

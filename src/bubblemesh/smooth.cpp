@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bubblemesh/measures.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -106,7 +107,7 @@ double worst_of(const Cloud& cloud, Measure measure, const TetComplex& tets, std
 bool search_place(const Shape& shape, double spacing, Measure measure, const TetComplex& tets, std::uint32_t node,
                   Cloud& cloud) {
   if (cloud.kinds[node] <= NodeKind::crease) return false;
-  std::vector<TetId> star(tets.star(node).begin(), tets.star(node).end());
+  Vector<TetId> star(tets.star(node).begin(), tets.star(node).end());
   const auto worst = std::ranges::min_element(star, {}, [&](TetId t) { return quality_of(cloud, measure, tets[t]); });
   std::swap(star.front(), *worst);
   double best = quality_of(cloud, measure, tets[star.front()]);
@@ -131,7 +132,7 @@ bool search_place(const Shape& shape, double spacing, Measure measure, const Tet
   return moved;
 }
 
-void even_out(const Shape& shape, const TetComplex& tets, const std::vector<std::uint32_t>& nodes, Cloud& cloud) {
+void even_out(const Shape& shape, const TetComplex& tets, const Vector<std::uint32_t>& nodes, Cloud& cloud) {
   for (const std::uint32_t node : nodes) {
     if (cloud.kinds[node] <= NodeKind::crease) continue;
     const Vec3 from = cloud.positions[node], from_normal = cloud.normals[node];

@@ -4,6 +4,7 @@
 #include "bubblemesh/cloud.hpp"
 #include "bubblemesh/flips.hpp"
 #include "bubblemesh/tet_complex.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 
 namespace crumble {
@@ -15,6 +16,6 @@ bool search_place(const Shape& shape, double spacing, Measure measure, const Tet
 
 /// Moves every node of `nodes` once towards where the tetrahedra at it are even: inside to their optimal Delaunay
 /// place, on the surface to the centroid of its faces. A move that makes them worse on the whole is not made.
-void even_out(const Shape& shape, const TetComplex& tets, const std::vector<std::uint32_t>& nodes, Cloud& cloud);
+void even_out(const Shape& shape, const TetComplex& tets, const Vector<std::uint32_t>& nodes, Cloud& cloud);
 
 }  // namespace crumble

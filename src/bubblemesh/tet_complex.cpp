@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -19,15 +21,15 @@ std::size_t corner_of(const Tetrahedron& t, std::uint32_t v) {
 
 }  // namespace
 
-TetComplex::TetComplex(std::size_t node_count, std::vector<Tetrahedron> tetrahedra)
+TetComplex::TetComplex(std::size_t node_count, Vector<Tetrahedron> tetrahedra)
     : tets_(std::move(tetrahedra)), stars_(node_count) {
   for (TetId t = 0; t < tets_.size(); ++t) {
     for (const std::uint32_t v : tets_[t]) stars_[v].push_back(t);
   }
 }
 
-std::vector<Tetrahedron> TetComplex::tetrahedra() const {
-  std::vector<Tetrahedron> result;
+Vector<Tetrahedron> TetComplex::tetrahedra() const {
+  Vector<Tetrahedron> result;
   for (TetId t = 0; t < tets_.size(); ++t) {
     if (alive(t)) result.push_back(tets_[t]);
   }
@@ -119,8 +121,8 @@ void TetComplex::begin_trial() {
   trial_ = Trial{{}, free_, tets_.size()};
 }
 
-std::vector<TetId> TetComplex::new_in_trial() const {
-  std::vector<TetId> result;
+Vector<TetId> TetComplex::new_in_trial() const {
+  Vector<TetId> result;
   for (const Change& change : trial_->changes) {
     if (alive(change.slot)) result.push_back(change.slot);
   }

@@ -9,8 +9,8 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
@@ -35,13 +35,13 @@ struct Ring {
 
 class TetComplex {
  public:
-  TetComplex(std::size_t node_count, std::vector<Tetrahedron> tetrahedra);
+  TetComplex(std::size_t node_count, Vector<Tetrahedron> tetrahedra);
 
   std::size_t slot_count() const { return tets_.size(); }
   bool alive(TetId t) const { return tets_[t][0] != tets_[t][1]; }
   const Tetrahedron& operator[](TetId t) const { return tets_[t]; }
   std::span<const TetId> star(std::uint32_t node) const { return stars_[node]; }
-  std::vector<Tetrahedron> tetrahedra() const;
+  Vector<Tetrahedron> tetrahedra() const;
 
   bool has_edge(std::uint32_t a, std::uint32_t b) const;
   bool has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
@@ -54,7 +54,7 @@ class TetComplex {
   /// From here on replacements are noted and can be taken back.
   void begin_trial();
   /// The tetrahedra that are there now and were not when the trial began.
-  std::vector<TetId> new_in_trial() const;
+  Vector<TetId> new_in_trial() const;
   void keep_trial() { trial_.reset(); }
   void undo_trial();
 
@@ -64,15 +64,15 @@ class TetComplex {
     Tetrahedron before;
   };
   struct Trial {
-    std::vector<Change> changes;
-    std::vector<TetId> free;
+    Vector<Change> changes;
+    Vector<TetId> free;
     std::size_t slots;
   };
   void write(TetId slot, const Tetrahedron& t);
 
-  std::vector<Tetrahedron> tets_;  // a free slot holds the same node twice
-  std::vector<TetId> free_;
-  std::vector<std::vector<TetId>> stars_;
+  Vector<Tetrahedron> tets_;  // a free slot holds the same node twice
+  Vector<TetId> free_;
+  Vector<Vector<TetId>> stars_;
   std::optional<Trial> trial_;
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/contacts.hpp"
 
 // Nodes that a frame holds for good.
@@ -30,7 +31,7 @@ void Contacts::find_attached(std::size_t attachment, const NodeSource& nodes) no
   const std::size_t holder = tools_.size() + attachment;
   Motion& motion = motions_[holder];
   if (!motion.placed) return;
-  const std::vector<std::uint32_t>& attached = attachments_[attachment].nodes;
+  const Vector<std::uint32_t>& attached = attachments_[attachment].nodes;
   const std::span<Vec3> anchors = this->anchors(attachment);
   if (!motion.engaged) {
     for (std::size_t k = 0; k < attached.size(); ++k) {

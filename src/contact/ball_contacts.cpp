@@ -98,6 +98,13 @@ void BallContacts::Impl::reset() noexcept {
   follow_roster();
 }
 
+void BallContacts::Impl::redefine(Impl& next) noexcept {
+  settings_.swap(next.settings_);
+  friction_ = next.friction_;
+  tau_ = next.tau_;
+  roster.redefine(next.roster);
+}
+
 void BallContacts::Impl::clear_outcome() noexcept {
   touching_pairs_.clear();
   pushed.clear();
@@ -153,6 +160,9 @@ void BallContacts::find(const VecView& positions, const VecView& velocities) noe
 }
 void BallContacts::reset() noexcept {
   impl_->reset();
+}
+void BallContacts::redefine(BallContacts& next) noexcept {
+  impl_->redefine(*next.impl_);
 }
 void BallContacts::save(ByteWriter& out) const {
   impl_->save(out);

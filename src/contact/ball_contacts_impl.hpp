@@ -3,17 +3,17 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "ball_forces.hpp"
 #include "ball_pairs.hpp"
 #include "ball_roster.hpp"
 #include "ball_search.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/ball_contacts.hpp"
 
 namespace crumble {
 
-class BallContacts::Impl {
+class BallContacts::Impl : public Allocated {
  public:
   explicit Impl(const BallSetup& setup);
 
@@ -21,6 +21,7 @@ class BallContacts::Impl {
               std::span<const BallFragment> fragments) noexcept;
   void find(const VecView& positions, const VecView& velocities) noexcept;
   void reset() noexcept;
+  void redefine(Impl& next) noexcept;
   void save(ByteWriter& out) const;
   void load(ByteReader& in);
   void add_to(Hash& hash) const noexcept;
@@ -82,30 +83,30 @@ class BallContacts::Impl {
   // Of the list of pairs: the margin of the next search of all, how long ago the last was, and how all move since.
   double largest_radius_, next_margin_;
   std::uint32_t steps_since_search_ = 0;
-  Vec3 drift_ = Vec3::Zero();      // metres per step
-  std::vector<Setting> settings_;  // by node
+  Vec3 drift_ = Vec3::Zero();  // metres per step
+  Vector<Setting> settings_;   // by node
 
   BallPairs pairs_, old_pairs_;
   ReservedVector<std::uint32_t> places_;                            // the nodes that the pairs' places stand for
   ReservedVector<std::uint32_t> touching_pairs_, touching_before_;  // ascending; in this step, in the last
-  std::vector<double> pair_stiffness_;                              // of those, N/m
+  Vector<double> pair_stiffness_;                                   // of those, N/m
   VecArray contact_normals_, contact_forces_;                       // of those
 
   // By place in roster.nodes().
   ReservedVector<double> radii_;
   ReservedVector<std::uint8_t> idle_;  // covered, in the heaviest fragment
-  std::vector<std::uint32_t> fragments_;
-  std::vector<std::uint8_t> is_paired_;    // in the list
-  std::vector<double> own_stiffness_;      // mean of its springs', N/m
-  std::vector<double> most_stiffness_;     // of all its pairs together, N/m
-  std::vector<std::uint32_t> contacts_;    // kept, like the stiffness, while the same pairs touch
-  std::vector<double> stiffness_;          // of one pair at most
-  std::vector<ForceSum> force_sums_;       // 0 between steps
+  Vector<std::uint32_t> fragments_;
+  Vector<std::uint8_t> is_paired_;         // in the list
+  Vector<double> own_stiffness_;           // mean of its springs', N/m
+  Vector<double> most_stiffness_;          // of all its pairs together, N/m
+  Vector<std::uint32_t> contacts_;         // kept, like the stiffness, while the same pairs touch
+  Vector<double> stiffness_;               // of one pair at most
+  Vector<ForceSum> force_sums_;            // 0 between steps
   ReservedVector<std::uint32_t> touched_;  // where contacts_ are not 0
   // By fragment.
-  std::vector<double> fragment_stiffness_;  // of all its pairs together: a share of M / tau^2
-  std::vector<std::uint32_t> fragment_contacts_;
-  std::vector<std::uint8_t> is_roused_;
+  Vector<double> fragment_stiffness_;  // of all its pairs together: a share of M / tau^2
+  Vector<std::uint32_t> fragment_contacts_;
+  Vector<std::uint8_t> is_roused_;
   BallBlock block_;
 };
 

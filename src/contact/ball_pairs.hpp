@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec_array.hpp"
 
 namespace crumble {
@@ -25,11 +25,11 @@ struct BallPairs {
   explicit BallPairs(std::size_t room) : keys(room), sum(room), reach(room), touched_at(room), shear(room) {}
 
   std::size_t count = 0;
-  std::vector<std::uint64_t> keys;        // BallPair
-  std::vector<double> sum;                // square of the sum of the radii
-  std::vector<double> reach;              // square of the contact distance: at most `sum`
-  std::vector<std::uint64_t> touched_at;  // the last step in which they did
-  VecArray shear;                         // of the friction's spring after that step, metres
+  Vector<std::uint64_t> keys;        // BallPair
+  Vector<double> sum;                // square of the sum of the radii
+  Vector<double> reach;              // square of the contact distance: at most `sum`
+  Vector<std::uint64_t> touched_at;  // the last step in which they did
+  VecArray shear;                    // of the friction's spring after that step, metres
 
   void copy(std::size_t to, const BallPairs& from, std::size_t k) noexcept {
     keys[to] = from.keys[k], sum[to] = from.sum[k], reach[to] = from.reach[k], touched_at[to] = from.touched_at[k];

@@ -9,7 +9,7 @@
 namespace crumble {
 
 BallRoster::BallRoster(const BallSetup& setup)
-    : graph_(std::make_shared<SpringGraph>(setup.radii.size(), setup.springs)),
+    : graph_(share_new<SpringGraph>(setup.radii.size(), setup.springs)),
       on_surface_(setup.on_surface.begin(), setup.on_surface.end()),
       fixed_(setup.fixed.begin(), setup.fixed.end()),
       joints_(setup.springs.size()),

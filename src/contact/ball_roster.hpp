@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/contact/ball_contacts.hpp"
 #include "crumble/tetmesh/spring_graph.hpp"
@@ -44,6 +44,8 @@ class BallRoster {
   bool could_touch(std::uint32_t a, std::uint32_t b) const noexcept;
 
   void reset() noexcept;
+  /// Which nodes are fixed: as in `next`.
+  void redefine(BallRoster& next) noexcept { fixed_.swap(next.fixed_); }
   void save(ByteWriter& out) const;
   void load(ByteReader& in);
   void add_to(Hash& hash) const noexcept;
@@ -60,18 +62,18 @@ class BallRoster {
   void load_joints(ByteReader& in);
 
   std::shared_ptr<const SpringGraph> graph_;  // immutable, as are the next two
-  std::vector<std::uint8_t> on_surface_, fixed_;
+  Vector<std::uint8_t> on_surface_, fixed_;
 
   // State. Labels are those of members.
-  std::vector<Joint> joints_;  // (spring_count)
-  std::vector<std::uint32_t> labels_, labels_before_;
+  Vector<Joint> joints_;  // (spring_count)
+  Vector<std::uint32_t> labels_, labels_before_;
   ReservedVector<BallFragment> fragments_;
 
   // What follows from it.
   ReservedVector<std::uint32_t> members_;  // on the surface or exposed, ascending
   ReservedVector<std::uint32_t> newcomers_;
   ReservedVector<std::uint32_t> fresh_cuts_;
-  std::vector<Exposure> exposures_;
+  Vector<Exposure> exposures_;
   ReservedVector<std::uint32_t> nodes_;
   bool changed_ = false;
 };

@@ -9,9 +9,9 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "ball_pairs.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/base/vec_array.hpp"
 
@@ -59,8 +59,8 @@ class BallSearch {
   struct Crowd {
     explicit Crowd(std::size_t room) : x(room), y(room), z(room), radius(room), excess(room), index(room) {}
     std::uint32_t count = 0;
-    std::vector<double> x, y, z, radius, excess;
-    std::vector<std::uint32_t> index;
+    Vector<double> x, y, z, radius, excess;
+    Vector<std::uint32_t> index;
   };
   enum class Take { active, idle, all };
   static constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -90,15 +90,15 @@ class BallSearch {
   double margin_ = 0, cells_per_metre_ = 0;
   Vec3 drift_ = Vec3::Zero();
   VecArray anchors_;  // less the drift since the last search_all()
-  std::vector<std::uint32_t> starts_, buckets_;
-  std::vector<Ball> sorted_;          // the grid's in the order of the buckets, then those beside it
-  std::vector<std::uint32_t> slots_;  // of each ball in sorted_
+  Vector<std::uint32_t> starts_, buckets_;
+  Vector<Ball> sorted_;          // the grid's in the order of the buckets, then those beside it
+  Vector<std::uint32_t> slots_;  // of each ball in sorted_
   Crowd crowd_;
-  std::vector<std::uint32_t> hits_;  // in the crowd
-  std::vector<std::uint8_t> is_renewed_;
+  Vector<std::uint32_t> hits_;  // in the crowd
+  Vector<std::uint8_t> is_renewed_;
   ReservedVector<std::uint32_t> strays_;
   ReservedVector<std::uint64_t> found_, pairs_;
-  std::vector<std::uint32_t> ends_;  // of the pairs of each ball
+  Vector<std::uint32_t> ends_;  // of the pairs of each ball
   bool any_idle_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include "contact/tool_bounds.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -22,8 +23,8 @@ void check(const Attachment& attachment, std::size_t index, std::span<const std:
 
 }  // namespace
 
-Contacts::Contacts(std::vector<Tool> tools, std::vector<Wall> walls, std::span<const std::uint8_t> fixed,
-                   ContactRule rule, std::vector<Attachment> attachments, SurfaceSamples surface)
+Contacts::Contacts(Vector<Tool> tools, Vector<Wall> walls, std::span<const std::uint8_t> fixed, ContactRule rule,
+                   Vector<Attachment> attachments, SurfaceSamples surface)
     : tools_(std::move(tools)),
       walls_(std::move(walls)),
       attachments_(std::move(attachments)),

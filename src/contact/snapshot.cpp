@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/contacts.hpp"
 
 // What contact remembers between steps, as bytes. A holder's velocity at the node follows at the next find.
@@ -100,7 +101,7 @@ void Contacts::load_contact(ByteReader& in) {
   require(c.node < uses_.size() && uses_[c.node] == (attached ? Use::attached : Use::free), "contact node");
   if (attached) {
     require(c.holder >= tools_.size() && c.holder < motions_.size(), "holder of an attached node");
-    const std::vector<std::uint32_t>& nodes = attachments_[c.holder - tools_.size()].nodes;
+    const Vector<std::uint32_t>& nodes = attachments_[c.holder - tools_.size()].nodes;
     require(std::find(nodes.begin(), nodes.end(), c.node) != nodes.end(), "holder of an attached node");
     const auto same = [&](const NodeConstraint& other) { return other.node == c.node; };
     require(std::none_of(constraints_.begin(), constraints_.end(), same), "attached node: it stands there twice");
@@ -110,10 +111,7 @@ void Contacts::load_contact(ByteReader& in) {
   require(c.holder != kWorldHolder || place.wall < walls_.size(), "wall");
   require(place.face == kNoFace || place.face < surface_.face_count(), "face");
   for (const Vec3& normal : {c.normal, place.normal}) require(attached || is_unit(normal), "normal of a contact");
-  if (!attached) {
-    const Friction& friction = c.holder == kWorldHolder ? walls_[place.wall].friction : tools_[c.holder].friction;
-    c.static_friction = friction.static_coefficient, c.dynamic_friction = friction.dynamic_coefficient;
-  }
+  take_friction(c, place);
   add(c, place);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 
 // Lists of different lengths, one behind the other.
 struct Lists {
-  std::vector<std::uint32_t> first, items;
+  Vector<std::uint32_t> first, items;
   std::span<const std::uint32_t> operator[](std::size_t i) const {
     return std::span(items).subspan(first[i], first[i + 1] - first[i]);
   }
@@ -19,7 +21,7 @@ struct Lists {
 
 // `members` names for each item the lists that hold it.
 template <class Members>
-Lists invert(const std::vector<Members>& members, std::size_t lists) {
+Lists invert(const Vector<Members>& members, std::size_t lists) {
   Lists result;
   result.first.assign(lists + 1, 0);
   for (const Members& of : members) {
@@ -27,7 +29,7 @@ Lists invert(const std::vector<Members>& members, std::size_t lists) {
   }
   for (std::size_t i = 0; i < lists; ++i) result.first[i + 1] += result.first[i];
   result.items.resize(result.first.back());
-  std::vector<std::uint32_t> next = result.first;
+  Vector<std::uint32_t> next = result.first;
   for (std::uint32_t item = 0; item < members.size(); ++item) {
     for (const std::uint32_t list : members[item]) result.items[next[list]++] = item;
   }
@@ -43,10 +45,10 @@ std::uint32_t edge_between(std::uint8_t a, std::uint8_t b) {
 }  // namespace
 
 struct SurfaceSamples::Faces {
-  std::vector<Triangle> nodes;                        // counter-clockwise seen from outside the first tetrahedron
-  std::vector<std::array<std::uint32_t, 2>> sides;    // its tetrahedra; the second kNone on the boundary
-  std::vector<std::array<std::uint32_t, 3>> springs;  // its edges
-  std::vector<std::array<std::uint32_t, 4>> of_tet;   // faces of each tetrahedron
+  Vector<Triangle> nodes;                        // counter-clockwise seen from outside the first tetrahedron
+  Vector<std::array<std::uint32_t, 2>> sides;    // its tetrahedra; the second kNone on the boundary
+  Vector<std::array<std::uint32_t, 3>> springs;  // its edges
+  Vector<std::array<std::uint32_t, 4>> of_tet;   // faces of each tetrahedron
   Lists of_node, tets_of_spring;
 };
 
@@ -55,7 +57,7 @@ SurfaceSamples::SurfaceSamples(const TetMesh& mesh) {
     Triangle sorted;
     std::uint32_t tet, local;
   };
-  std::vector<Side> sides;
+  Vector<Side> sides;
   for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     for (std::uint32_t f = 0; f < 4; ++f) {
       Side side{{}, t, f};
@@ -67,7 +69,7 @@ SurfaceSamples::SurfaceSamples(const TetMesh& mesh) {
   std::sort(sides.begin(), sides.end(),
             [](const Side& a, const Side& b) { return std::tie(a.sorted, a.tet) < std::tie(b.sorted, b.tet); });
 
-  auto faces = std::make_shared<Faces>();
+  auto faces = share_new<Faces>();
   faces->of_tet.resize(mesh.tetrahedra.size());
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const auto& [sorted, tet, local] = sides[i];

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/phantom.hpp"
 
 namespace crumble {
@@ -20,8 +21,8 @@ std::string line_of(const std::filesystem::path& file) {
   return line;
 }
 
-std::vector<std::string> phantoms_on_usb(const std::string& folder) {
-  std::vector<std::string> found;
+Vector<std::string> phantoms_on_usb(const std::string& folder) {
+  Vector<std::string> found;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
     if (line_of(entry.path() / "idVendor") != kPhantomVendor) continue;
@@ -44,8 +45,8 @@ AttachedDevice ask_inverse3(const Inverse3Options& options) {
 
 }  // namespace
 
-std::vector<AttachedDevice> attached_devices(const AttachedOptions& options) {
-  std::vector<AttachedDevice> out;
+Vector<AttachedDevice> attached_devices(const AttachedOptions& options) {
+  Vector<AttachedDevice> out;
   const PhantomLibrary library = find_phantom_library(options.library);
   const bool usable = !library.path.empty();
   for (const std::string& name : phantoms_on_usb(options.usb)) {

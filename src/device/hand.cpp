@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "device/check.hpp"
 #include "device/minimum_jerk.hpp"
@@ -13,7 +14,7 @@ namespace {
 constexpr int kSubsteps = 64;
 constexpr std::uint64_t kSlots = HandOptions::kMaxDelay + 1;
 
-void require_points(const std::vector<HandPoint>& points) {
+void require_points(const Vector<HandPoint>& points) {
   device::require_times("hand.points", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     device::require_vector("hand.points[" + std::to_string(i) + "].move", points[i].move);
@@ -106,7 +107,7 @@ void SimulatedHand::write(const Vec3& force, const Vec3&) noexcept {
 }
 
 Vec3 SimulatedHand::wanted(double time) const noexcept {
-  const std::vector<HandPoint>& points = options_.points;
+  const Vector<HandPoint>& points = options_.points;
   const auto next = std::upper_bound(points.begin(), points.end(), time,
                                      [](double t, const HandPoint& point) { return t < point.time; });
   const HandPoint& a = *(next - 1);

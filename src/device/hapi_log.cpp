@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "device/check.hpp"
 #include "device/quoted.hpp"
@@ -229,10 +230,10 @@ class LogParser {
   const char* begin_ = nullptr;  // of the whole of it
   std::string name_;
   HapiLogOptions options_;
-  bool cut_off_ = false;            // whether the line ends with the text instead of an end of line
-  std::size_t number_ = 0;          // of the line, from 1
-  std::vector<std::size_t> order_;  // fields of a row, as indices into kFields
-  std::size_t width_ = 0;           // cells of a row
+  bool cut_off_ = false;       // whether the line ends with the text instead of an end of line
+  std::size_t number_ = 0;     // of the line, from 1
+  Vector<std::size_t> order_;  // fields of a row, as indices into kFields
+  std::size_t width_ = 0;      // cells of a row
   std::size_t repeated_ = 0;
   Trajectory out_;
 };

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble::device::hd {
@@ -49,7 +50,7 @@ Place& Driver::free_place() {
   throw Error(Code::too_large, "a process opens at most " + std::to_string(kMostDevices) + " PHANToM devices");
 }
 
-Place& Driver::open(const std::vector<const char*>& names) {
+Place& Driver::open(const Vector<const char*>& names) {
   const std::lock_guard lock(mutex_);
   if (ticking_ > 0) {
     throw Error(Code::state, "a PHANToM cannot be opened while the servo thread of another runs: open both first");

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 #include "device/hd_errors.hpp"
 #include "device/hd_library.hpp"
@@ -48,7 +48,7 @@ class Driver {
   // Threads of the host
 
   /// Opens the device with one of `names`, null being none, and makes it current. Throws Error, see open_phantom.
-  Place& open(const std::vector<const char*>& names);
+  Place& open(const Vector<const char*>& names);
   void close(Place& place, bool disable) noexcept;
   void start(Place& place, const ServoTick& tick);
   void stop(Place& place) noexcept;

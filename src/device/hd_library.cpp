@@ -9,9 +9,11 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::device::hd {
 namespace {
@@ -45,10 +47,10 @@ std::string loader_error() {
 }
 #endif
 
-std::vector<std::string> candidates(const std::string& path) {
+Vector<std::string> candidates(const std::string& path) {
   if (!path.empty()) return {path};
   if (const char* const named = std::getenv("CRUMBLE_HDAPI"); named && *named) return {named};
-  return kNames;
+  return {kNames.begin(), kNames.end()};
 }
 
 template <class Function>
@@ -84,7 +86,7 @@ Api bind_all(void* library, const std::string& path) {
   return api;
 }
 
-std::unique_ptr<const Library> load_first(const std::vector<std::string>& names) {
+std::unique_ptr<const Library> load_first(const Vector<std::string>& names) {
   std::string reasons;
   for (const std::string& name : names) {
     if (void* const library = open(name.c_str())) {

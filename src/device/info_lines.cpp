@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble::device {
@@ -56,8 +57,8 @@ std::uint32_t read_measured(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> info_lines(const DeviceInfo& info) {
-  std::vector<std::string> lines = {"measured: " + measured_text(info.measured)};
+Vector<std::string> info_lines(const DeviceInfo& info) {
+  Vector<std::string> lines = {"measured: " + measured_text(info.measured)};
   for (const auto& [name, limit] : kLimits) {
     if (info.*limit > 0) lines.push_back(std::string(name) + ": " + to_text(info.*limit));
   }

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/trajectory.hpp"
 
 namespace crumble::device {
 
-std::vector<std::string> info_lines(const DeviceInfo& info);
+Vector<std::string> info_lines(const DeviceInfo& info);
 /// Those that are there, over what `info` has. Throws Error(format) naming a line that does not read.
 void read_info_lines(const Trajectory& trajectory, DeviceInfo& info);
 

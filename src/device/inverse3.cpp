@@ -11,6 +11,7 @@
 #include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
 #include "crumble/base/latest_value.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/shared_value.hpp"
 #include "crumble/base/text.hpp"
 #include "device/inverse3_messages.hpp"
@@ -232,7 +233,7 @@ struct Found {
   Inverse3State state;
 };
 
-std::string pick(const std::vector<std::string>& ids, const Inverse3Options& options) {
+std::string pick(const Vector<std::string>& ids, const Inverse3Options& options) {
   if (ids.empty()) {
     throw Error(Code::device_lost, "no Inverse3 is attached to the Haply service at " + address(options));
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble::device {
 namespace {
 
@@ -119,10 +121,10 @@ MessageKind read_state(std::string_view text, std::string_view device_id, Invers
   }
 }
 
-std::optional<std::vector<std::string>> inverse3_ids(std::string_view text) {
+std::optional<Vector<std::string>> inverse3_ids(std::string_view text) {
   try {
     const Json message = parse(text);
-    std::vector<std::string> ids;
+    Vector<std::string> ids;
     if (const Json* devices = member(message, "inverse3", &Json::is_array)) {
       for (const Json& device : *devices) ids.push_back(id_of(device));
     }

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 
 namespace crumble::device {
@@ -30,7 +30,7 @@ enum class MessageKind : std::uint8_t {
 MessageKind read_state(std::string_view text, std::string_view device_id, Inverse3State& state) noexcept;
 
 /// The ids of all Inverse3 in the message, in its order; nothing when it is malformed.
-std::optional<std::vector<std::string>> inverse3_ids(std::string_view text);
+std::optional<Vector<std::string>> inverse3_ids(std::string_view text);
 
 /// The command that puts `force` (N, device frame of device.hpp, finite) on the device.
 std::string force_command(const std::string& device_id, const Vec3& force);

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/scripted.hpp"
 #include "device/check.hpp"
 #include "device/turn.hpp"
@@ -53,7 +54,7 @@ class PathDevice final : public Device {
 
   DeviceInfo info_;
   Pose start_;
-  std::vector<PathPoint> points_;  // the first one at time 0
+  Vector<PathPoint> points_;  // the first one at time 0
   double tick_;
   std::uint64_t count_ = 0;
 };

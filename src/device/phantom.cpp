@@ -6,6 +6,7 @@
 
 #include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "device/check.hpp"
 #include "device/hd_driver.hpp"
@@ -175,7 +176,7 @@ void check(const PhantomOptions& o) {
 }
 
 // A named device is that one or none: another might be in somebody else's hand.
-std::vector<const char*> names_of(const PhantomOptions& options) {
+Vector<const char*> names_of(const PhantomOptions& options) {
   if (!options.name.empty()) return {options.name.c_str()};
   return {nullptr, "Default Device", "Default PHANToM"};  // the first fails with some installations
 }

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble {
@@ -73,7 +74,7 @@ PoseCurve::PoseCurve(const Trajectory& trajectory) {
   for (const TrajectoryRow& row : trajectory.rows) knots_.push_back({row.time, renormalized(row.pose), Vec3::Zero()});
 
   const auto length = [&](std::size_t i) { return knots_[i + 1].time - knots_[i].time; };
-  std::vector<Vec3> secants(n - 1);
+  Vector<Vec3> secants(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     secants[i] = (knots_[i + 1].pose.position - knots_[i].pose.position) / length(i);
     // Also keeps everything below finite. The negation catches NaN.

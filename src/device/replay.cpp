@@ -5,6 +5,7 @@
 
 #include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/pose_curve.hpp"
 #include "device/info_lines.hpp"
 
@@ -102,7 +103,7 @@ class Replay : public Device {
 
   DeviceInfo info_;
   std::uint32_t columns_;
-  std::vector<TrajectoryRow> rows_;
+  Vector<TrajectoryRow> rows_;
   PoseCurve curve_;
   Window window_;
   EndPolicy end_;

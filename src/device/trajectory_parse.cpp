@@ -2,6 +2,7 @@
 // it states, and every complaint says where.
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "device/quoted.hpp"
 #include "device/trajectory_columns.hpp"
@@ -144,7 +145,7 @@ class Parser {
   std::string name_;
   std::size_t number_ = 0;  // of line_, from 1
   bool at_end_ = false;
-  std::vector<std::size_t> order_;  // column of each cell, as an index into kColumns
+  Vector<std::size_t> order_;  // column of each cell, as an index into kColumns
   Trajectory out_;
 };
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/spring_graph.hpp"
 
 namespace crumble {
@@ -13,8 +13,8 @@ struct FragmentGraph : SpringGraph {
   /// Throws what SpringGraph's constructor does.
   FragmentGraph(std::size_t node_count, std::span<const Edge> given_springs);
 
-  std::vector<std::uint32_t> parts;       // connected component of each node, numbered by least node (node_count)
-  std::vector<std::uint32_t> part_sizes;  // nodes of each
+  Vector<std::uint32_t> parts;       // connected component of each node, numbered by least node (node_count)
+  Vector<std::uint32_t> part_sizes;  // nodes of each
 };
 
 }  // namespace crumble

@@ -22,7 +22,7 @@
 namespace crumble {
 
 FragmentTracker::FragmentTracker(std::size_t node_count, std::span<const Edge> springs)
-    : graph_(std::make_shared<FragmentGraph>(node_count, springs)),
+    : graph_(share_new<FragmentGraph>(node_count, springs)),
       labels_(node_count),
       cut_(springs.size()),
       gone_(springs.size()),

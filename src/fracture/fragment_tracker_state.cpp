@@ -3,6 +3,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragment_tracker.hpp"
 #include "fragment_graph.hpp"
 
@@ -82,12 +83,12 @@ void FragmentTracker::load_records(ByteReader& in) {
 
 // The labels must be the parts of the body as the settled cuts have left it, each with its own id or removed.
 void FragmentTracker::load_labels(ByteReader& in) {
-  const std::vector<std::uint32_t> labels = in.get_vector<std::uint32_t>();
+  const Vector<std::uint32_t> labels = in.get_vector<std::uint32_t>();
   require(labels.size() == labels_.size(), "the number of labels");
-  std::vector<std::uint8_t> intact(gone_.size());
+  Vector<std::uint8_t> intact(gone_.size());
   for (std::size_t s = 0; s < intact.size(); ++s) intact[s] = !gone_[s];
   FragmentLabeler parts(labels.size(), graph_->springs);
-  std::vector<std::uint32_t> ids(parts.label(intact)), node_counts(records_.size());
+  Vector<std::uint32_t> ids(parts.label(intact)), node_counts(records_.size());
   std::size_t known = 0, removed = 0;  // parts
   for (std::size_t node = 0; node < labels.size(); ++node) {
     const std::uint32_t part = parts.labels()[node], id = labels[node];

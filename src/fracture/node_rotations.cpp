@@ -18,6 +18,8 @@
 #include <cmath>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -64,7 +66,7 @@ NodeRotations::NodeRotations(const TetMesh& mesh, double settle)
       freed_nodes_(mesh.node_count()) {
   for (const auto& [a, b] : mesh.springs) ++first_neighbor_[a + 1], ++first_neighbor_[b + 1];
   for (std::size_t i = 0; i < mesh.node_count(); ++i) first_neighbor_[i + 1] += first_neighbor_[i];
-  std::vector<std::uint32_t> next(first_neighbor_.begin(), first_neighbor_.end() - 1);
+  Vector<std::uint32_t> next(first_neighbor_.begin(), first_neighbor_.end() - 1);
   for (std::uint32_t s = 0; s < mesh.springs.size(); ++s) {
     const auto [a, b] = mesh.springs[s];
     const Vec3 offset = mesh.positions[b] - mesh.positions[a];

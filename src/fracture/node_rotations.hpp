@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 #include "surface_arrays.hpp"
@@ -54,14 +54,14 @@ class NodeRotations {
 
   std::span<const Edge> springs_;
   double settle_;
-  std::vector<std::uint32_t> first_neighbor_;  // node_count + 1
-  std::vector<Neighbor> neighbors_;
-  std::vector<std::uint8_t> intact_;   // per spring
-  std::vector<std::uint32_t> uses_;    // per node
-  std::vector<std::uint8_t> started_;  // per node: there is a turn to remember
-  UntouchedArray<Turn> turns_;         // per node
-  UntouchedArray<Mat3> drawn_;         // per node: fit + what is left of the offset
-  IndexSet new_nodes_, freed_nodes_;   // for refit()
+  Vector<std::uint32_t> first_neighbor_;  // node_count + 1
+  Vector<Neighbor> neighbors_;
+  Vector<std::uint8_t> intact_;       // per spring
+  Vector<std::uint32_t> uses_;        // per node
+  Vector<std::uint8_t> started_;      // per node: there is a turn to remember
+  UntouchedArray<Turn> turns_;        // per node
+  UntouchedArray<Mat3> drawn_;        // per node: fit + what is left of the offset
+  IndexSet new_nodes_, freed_nodes_;  // for refit()
 };
 
 }  // namespace crumble

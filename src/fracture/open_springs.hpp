@@ -6,8 +6,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "surface_arrays.hpp"
 #include "surface_topology.hpp"
@@ -42,9 +42,9 @@ class OpenSprings {
   const TetMesh& mesh_;
   const SurfaceTopology& topology_;
   bool by_fragments_;
-  std::vector<std::uint8_t> intact_;   // per spring
-  std::vector<std::uint8_t> closed_;   // per spring; mode `fragments` only
-  std::vector<std::uint32_t> labels_;  // per node
+  Vector<std::uint8_t> intact_;   // per spring
+  Vector<std::uint8_t> closed_;   // per spring; mode `fragments` only
+  Vector<std::uint32_t> labels_;  // per node
   IndexSet cuts_, dirty_;
 };
 

@@ -2,7 +2,8 @@
 
 #include <bit>
 #include <optional>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble::surface_patterns {
 namespace {
@@ -14,7 +15,7 @@ struct Point {
   unsigned corners;  // bits: of which it is the mean
   Vec3 position;
 };
-using Facet = std::vector<Point>;  // counter-clockwise from outside; three or four
+using Facet = Vector<Point>;  // counter-clockwise from outside; three or four
 
 Point make_point(std::size_t site, std::size_t copy, unsigned corners) {
   const double weight = 2.0 / std::popcount(corners);
@@ -39,8 +40,8 @@ bool is_maximal_clique(unsigned mask, unsigned corners) {
   return true;
 }
 
-std::vector<Point> solid_points(unsigned mask, unsigned clique) {
-  std::vector<Point> points;
+Vector<Point> solid_points(unsigned mask, unsigned clique) {
+  Vector<Point> points;
   for (unsigned c = 0; c < 4; ++c) {
     if ((clique >> c & 1u) != 0) points.push_back(make_point(kCorners + c, 0, 1u << c));
   }
@@ -60,7 +61,7 @@ bool is_left(const Vec3& outward, const Point& a, const Point& b, const Point& c
 }
 
 // Round the facet, from its first point. No three points are in one line.
-Facet in_order(const std::vector<Point>& points, const Vec3& outward) {
+Facet in_order(const Vector<Point>& points, const Vec3& outward) {
   Facet facet{points.front()};
   while (facet.size() < points.size()) {
     for (const Point& next : points) {
@@ -79,10 +80,10 @@ Facet in_order(const std::vector<Point>& points, const Vec3& outward) {
 }
 
 // The facet of the hull through three of its points, if they are on one and are the first three there.
-std::optional<Facet> facet_through(const std::vector<Point>& points, std::size_t i, std::size_t j, std::size_t k) {
+std::optional<Facet> facet_through(const Vector<Point>& points, std::size_t i, std::size_t j, std::size_t k) {
   const Vec3& origin = points[i].position;
   Vec3 outward = cross(points[j].position - origin, points[k].position - origin);
-  std::vector<Point> on_plane;
+  Vector<Point> on_plane;
   bool before = false, behind = false;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double height = dot(outward, points[p].position - origin);
@@ -97,8 +98,8 @@ std::optional<Facet> facet_through(const std::vector<Point>& points, std::size_t
   return in_order(on_plane, outward);
 }
 
-std::vector<Facet> hull_facets(const std::vector<Point>& points) {
-  std::vector<Facet> facets;
+Vector<Facet> hull_facets(const Vector<Point>& points) {
+  Vector<Facet> facets;
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
       for (std::size_t k = j + 1; k < points.size(); ++k) {
@@ -132,7 +133,7 @@ std::array<MaskPatterns, kCutMaskCount> make_paper_patterns() {
     for (unsigned clique = 1; clique < 16; ++clique) {
       if (!is_maximal_clique(mask, clique)) continue;
       const auto owner = static_cast<std::uint8_t>(std::countr_zero(clique));
-      const std::vector<Point> points = solid_points(mask, clique);
+      const Vector<Point> points = solid_points(mask, clique);
       for (const Facet& facet : hull_facets(points)) add_facet(facet, owner, table[mask]);
     }
     // Corners and cut ends alike are carried by the one corner they start at.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "surface_state.hpp"
 
 namespace crumble {
@@ -74,7 +75,7 @@ std::size_t SurfaceExtractor::max_vertex_count() const noexcept {
 
 FragmentSurface fragment_surface(const SurfaceExtractor& surface, std::uint32_t fragment) {
   FragmentSurface part;
-  std::vector<std::uint32_t> part_vertices(surface.positions().size(), SurfaceTopology::kNone);
+  Vector<std::uint32_t> part_vertices(surface.positions().size(), SurfaceTopology::kNone);
   for (std::uint32_t t = 0; t < surface.triangles().size(); ++t) {
     if (surface.fragments()[t] != fragment) continue;
     Triangle triangle = surface.triangles()[t];

@@ -6,21 +6,31 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
+#include <type_traits>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 template <class T>
 class UntouchedArray {
  public:
-  explicit UntouchedArray(std::size_t size) : items_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  explicit UntouchedArray(std::size_t size)
+      : items_(static_cast<T*>(take_memory(size * sizeof(T), alignof(T))), {size * sizeof(T)}), size_(size) {
+    std::uninitialized_default_construct_n(items_.get(), size);
+  }
   T& operator[](std::size_t i) noexcept { return items_[i]; }
   const T& operator[](std::size_t i) const noexcept { return items_[i]; }
   std::span<const T> first(std::size_t count) const noexcept { return {items_.get(), count}; }
   std::size_t size() const noexcept { return size_; }
 
  private:
-  std::unique_ptr<T[]> items_;
+  static_assert(std::is_trivially_destructible_v<T>);
+  struct GiveBack {
+    std::size_t bytes;
+    void operator()(T* items) const noexcept { give_memory_back(items, bytes, alignof(T)); }
+  };
+  std::unique_ptr<T[], GiveBack> items_;
   std::size_t size_;
 };
 
@@ -69,7 +79,7 @@ class IndexSet {
   }
   static std::uint64_t bit(std::uint32_t index) noexcept { return std::uint64_t{1} << index % 64; }
 
-  std::vector<std::uint64_t> marks_;
+  Vector<std::uint64_t> marks_;
   UntouchedArray<std::uint32_t> items_, all_items_;
   std::size_t count_ = 0, listed_ = 0;
   bool all_ = false;

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "surface_arrays.hpp"
 #include "surface_triangles.hpp"
 
@@ -27,7 +27,7 @@ class SurfaceNormals {
   void shade_interior(const TriangleList& triangles, std::span<const Vec3> positions) noexcept;
 
   const SurfaceTopology& topology_;
-  std::vector<Vec3> sums_;  // per normal slot: area vectors of the skin round it
+  Vector<Vec3> sums_;  // per normal slot: area vectors of the skin round it
   UntouchedArray<std::array<Eigen::Vector3f, 3>> corners_;
 };
 

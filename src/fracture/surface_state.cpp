@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "paper_patterns.hpp"
 
@@ -73,8 +74,8 @@ SurfaceExtractor::State::State(const TetMesh& mesh, const SurfaceSettings& setti
       normals_(topology_, triangles_.bound()),
       masks_(mesh.tetrahedra.size()) {
   const VecArray rest(mesh.positions);
-  const std::vector<std::uint8_t> intact(mesh.springs.size(), 1);
-  const std::vector<std::uint32_t> fragments(mesh.node_count(), 0);
+  const Vector<std::uint8_t> intact(mesh.springs.size(), 1);
+  const Vector<std::uint32_t> fragments(mesh.node_count(), 0);
   rebuild({rest, intact, fragments, std::numeric_limits<double>::quiet_NaN()});  // no time comes after it
 }
 

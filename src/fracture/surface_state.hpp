@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "node_rotations.hpp"
 #include "open_springs.hpp"
@@ -17,7 +17,7 @@
 
 namespace crumble {
 
-class SurfaceExtractor::State {
+class SurfaceExtractor::State : public Allocated {
  public:
   State(const TetMesh& mesh, const SurfaceSettings& settings);
 
@@ -65,8 +65,8 @@ class SurfaceExtractor::State {
   VertexList vertices_;
   TriangleList triangles_;
   SurfaceNormals normals_;
-  std::vector<std::uint8_t> masks_;  // per tetrahedron, as drawn
-  VecView positions_;                // of the nodes, during a call
+  Vector<std::uint8_t> masks_;  // per tetrahedron, as drawn
+  VecView positions_;           // of the nodes, during a call
   double time_ = 0;
   bool rebuilt_ = false;
 };

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 
 namespace crumble {
@@ -53,8 +54,8 @@ struct FaceUse {
   auto operator<=>(const FaceUse&) const = default;
 };
 
-std::vector<FaceUse> sorted_face_uses(const std::vector<SurfaceTopology::Cell>& cells) {
-  std::vector<FaceUse> uses;
+Vector<FaceUse> sorted_face_uses(const Vector<SurfaceTopology::Cell>& cells) {
+  Vector<FaceUse> uses;
   uses.reserve(4 * cells.size());
   for (std::uint32_t t = 0; t < cells.size(); ++t) {
     const Tetrahedron& n = cells[t].nodes;
@@ -75,8 +76,8 @@ struct FaceSide {
   auto operator<=>(const FaceSide&) const = default;
 };
 
-std::vector<FaceSide> sorted_sides(const SurfaceTopology& topology) {
-  std::vector<FaceSide> sides;
+Vector<FaceSide> sorted_sides(const SurfaceTopology& topology) {
+  Vector<FaceSide> sides;
   for (std::uint32_t f = 0; f < topology.outer_faces.size(); ++f) {
     const std::uint32_t tetrahedron = topology.outer_faces[f].tetrahedron, face = topology.outer_faces[f].face;
     for (std::uint8_t s = 0; s < 6; ++s) {
@@ -99,7 +100,7 @@ struct DisjointSets {
     a = root(a), b = root(b);
     parents[std::max(a, b)] = std::min(a, b);
   }
-  std::vector<std::uint32_t> parents;
+  Vector<std::uint32_t> parents;
 };
 
 // Copies that a site of an outer face can have; none for the tetrahedron's other sites.
@@ -116,8 +117,8 @@ Vec3 outward_normal(const TetMesh& mesh, const SurfaceTopology::Cell& cell, std:
 }
 
 // The boundary's triangles with their corners ascending, sorted, each with its index.
-std::vector<std::pair<Triangle, std::uint32_t>> sorted_boundary(const TetMesh& mesh) {
-  std::vector<std::pair<Triangle, std::uint32_t>> sorted;
+Vector<std::pair<Triangle, std::uint32_t>> sorted_boundary(const TetMesh& mesh) {
+  Vector<std::pair<Triangle, std::uint32_t>> sorted;
   for (std::uint32_t b = 0; b < mesh.boundary.size(); ++b) {
     Triangle nodes = mesh.boundary[b];
     std::sort(nodes.begin(), nodes.end());
@@ -149,7 +150,7 @@ TetrahedronLists list_tetrahedra(std::size_t item_count, std::size_t tetrahedron
   }
   std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
   lists.tetrahedra.resize(lists.first.back());
-  std::vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
+  Vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
   for (std::uint32_t t = 0; t < tetrahedron_count; ++t) {
     for (const std::uint32_t item : items_of(t)) lists.tetrahedra[next[item]++] = t;
   }
@@ -176,7 +177,7 @@ SurfaceTopology::SurfaceTopology(const TetMesh& mesh, double crease) {
 
 // Outer faces come in the order of the sorted boundary, so each finds its triangle there next.
 void SurfaceTopology::find_faces(const TetMesh& mesh) {
-  const std::vector<FaceUse> uses = sorted_face_uses(cells);
+  const Vector<FaceUse> uses = sorted_face_uses(cells);
   const auto boundary = sorted_boundary(mesh);
   auto outer = boundary.begin();
   outer_faces.resize(boundary.size());
@@ -194,7 +195,7 @@ void SurfaceTopology::find_faces(const TetMesh& mesh) {
     outer_faces[outer->second] = make_outer_face(use, cells[use.tetrahedron].nodes, mesh.boundary[outer->second]);
     ++outer;
   }
-  std::vector<std::uint8_t> is_outer(mesh.node_count());
+  Vector<std::uint8_t> is_outer(mesh.node_count());
   for (const Triangle& t : mesh.boundary) is_outer[t[0]] = is_outer[t[1]] = is_outer[t[2]] = 1;
   outer_node_count = static_cast<std::size_t>(std::count(is_outer.begin(), is_outer.end(), 1));
 }
@@ -235,7 +236,7 @@ void SurfaceTopology::share_normals(const TetMesh& mesh, double crease) {
   };
   const double least_cosine = cos_exact(crease);
   DisjointSets shared(outer_faces.size() * kSiteCount);
-  const std::vector<FaceSide> sides = sorted_sides(*this);
+  const Vector<FaceSide> sides = sorted_sides(*this);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const FaceSide &left = sides[i], &right = sides[i + 1];
     if (left.spring != right.spring) continue;
@@ -250,7 +251,7 @@ void SurfaceTopology::share_normals(const TetMesh& mesh, double crease) {
     }
   }
   // A set is met first at its root, the least key.
-  std::vector<std::uint32_t> first_slot_of(outer_faces.size() * kSiteCount);
+  Vector<std::uint32_t> first_slot_of(outer_faces.size() * kSiteCount);
   for (std::uint32_t f = 0; f < outer_faces.size(); ++f) {
     for (std::size_t site = 0; site < kSiteCount; ++site) {
       const std::uint32_t root = shared.root(key(f, site));

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 #include "surface_patterns.hpp"
 
@@ -17,8 +17,8 @@ struct TetrahedronLists {
   std::span<const std::uint32_t> operator[](std::size_t item) const noexcept {
     return std::span(tetrahedra).subspan(first[item], first[item + 1] - first[item]);
   }
-  std::vector<std::uint32_t> first;  // item count + 1
-  std::vector<std::uint32_t> tetrahedra;
+  Vector<std::uint32_t> first;  // item count + 1
+  Vector<std::uint32_t> tetrahedra;
 };
 
 struct SurfaceTopology {
@@ -47,8 +47,8 @@ struct SurfaceTopology {
   /// Tetrahedra whose triangles may use the vertex in `slot`.
   std::span<const std::uint32_t> users(std::uint32_t slot) const noexcept;
 
-  std::vector<Cell> cells;             // per tetrahedron
-  std::vector<OuterFace> outer_faces;  // per triangle of TetMesh::boundary
+  Vector<Cell> cells;             // per tetrahedron
+  Vector<OuterFace> outer_faces;  // per triangle of TetMesh::boundary
   TetrahedronLists node_tetrahedra, spring_tetrahedra;
   std::size_t slot_count = 0;
   std::size_t normal_slot_count = 0;
@@ -60,8 +60,8 @@ struct SurfaceTopology {
   void number_slots(const TetMesh& mesh);
   void share_normals(const TetMesh& mesh, double crease);
 
-  std::vector<std::array<std::uint32_t, 2>> face_tetrahedra_;  // the same twice for an outer face
-  std::vector<std::uint32_t> own_tetrahedron_;                 // 0, 1, 2, ...
+  Vector<std::array<std::uint32_t, 2>> face_tetrahedra_;  // the same twice for an outer face
+  Vector<std::uint32_t> own_tetrahedron_;                 // 0, 1, 2, ...
   std::uint32_t first_middle_slot_ = 0, first_face_slot_ = 0, first_center_slot_ = 0;
 };
 

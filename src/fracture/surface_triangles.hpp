@@ -9,8 +9,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 #include "surface_arrays.hpp"
 #include "surface_patterns.hpp"
@@ -74,7 +74,7 @@ class TriangleList {
   std::uint32_t tetrahedron_count_;
   std::size_t interior_bound_, skin_bound_, first_skin_key_;
   std::size_t count_ = 0, skin_count_ = 0;
-  std::vector<std::uint8_t> home_counts_;
+  Vector<std::uint8_t> home_counts_;
   UntouchedArray<std::uint32_t> where_;  // per key: the triangle
   UntouchedArray<Triangle> vertices_;
   UntouchedArray<Link> links_;

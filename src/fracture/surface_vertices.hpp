@@ -11,8 +11,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "node_rotations.hpp"
 #include "surface_arrays.hpp"
@@ -85,7 +85,7 @@ class VertexList {
   NodeRotations& rotations_;
   double settle_;
   std::size_t count_ = 0;
-  std::vector<std::uint32_t> slot_vertices_;
+  Vector<std::uint32_t> slot_vertices_;
   UntouchedArray<Vec3> positions_, rest_positions_;
   UntouchedArray<Vertex> vertices_;
   UntouchedArray<Vec3> offsets_;        // from its own place, when it was freed

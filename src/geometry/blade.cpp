@@ -1,3 +1,4 @@
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/tool_solids.hpp"
 #include "geometry/round_solids.hpp"
 
@@ -11,7 +12,7 @@ ConvexPolyhedron make_blade(const Vec3& size, double bevel) {
   require_in_range("bevel", bevel, 0, size.y());
   const double x = size.x() / 2, y = size.y() / 2, z = size.z() / 2;
   // across the blade, counter-clockwise from the edge; a wedge has no straight part
-  std::vector<std::array<double, 2>> outline{{0, -y}, {x, bevel - y}, {x, y}, {-x, y}, {-x, bevel - y}};
+  Vector<std::array<double, 2>> outline{{0, -y}, {x, bevel - y}, {x, y}, {-x, y}, {-x, bevel - y}};
   if (bevel == size.y()) outline = {{0, -y}, {x, y}, {-x, y}};
   TriangleMesh mesh;
   for (const auto& [px, py] : outline) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/tool_solids.hpp"
 #include "geometry/round_solids.hpp"
 
@@ -62,9 +63,9 @@ class CapsuleModel final : public SolidModel {
     return b > 0 ? -c / (b + root) : (root - b) / a;
   }
 
-  std::vector<ProfilePoint> profile() const {
+  Vector<ProfilePoint> profile() const {
     constexpr int kRings = 8;  // in each half ball
-    std::vector<ProfilePoint> points{{0, -half_length_ - radius_}};
+    Vector<ProfilePoint> points{{0, -half_length_ - radius_}};
     for (int i = 1; i <= 2 * kRings; ++i) {
       const double angle = kPi / 2 * (i - kRings) / kRings;
       const double radius = radius_ * cos_exact(angle), z = radius_ * sin_exact(angle);
@@ -89,7 +90,7 @@ Solid make_capsule(double radius, double length) {
   require_size("radius", radius);
   require_finite("length", length);
   require_in_range("length", length, 0, 1000);
-  return std::shared_ptr<const SolidModel>(std::make_shared<CapsuleModel>(radius, length));
+  return std::shared_ptr<const SolidModel>(share_new<CapsuleModel>(radius, length));
 }
 
 }  // namespace crumble

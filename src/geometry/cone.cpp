@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/tool_solids.hpp"
 #include "geometry/round_solids.hpp"
 
@@ -105,7 +106,7 @@ class ConeModel final : public SolidModel {
   }
 
   // The point and a square around the rim.
-  std::vector<Vec3> round_box() const {
+  Vector<Vec3> round_box() const {
     const double r = radius_, top = height_ / 2;
     return {{0, 0, -top}, {-r, -r, top}, {r, -r, top}, {r, r, top}, {-r, r, top}};
   }
@@ -118,7 +119,7 @@ class ConeModel final : public SolidModel {
 Solid make_cone(double radius, double height) {
   require_size("radius", radius);
   require_size("height", height);
-  return std::shared_ptr<const SolidModel>(std::make_shared<ConeModel>(radius, height));
+  return std::shared_ptr<const SolidModel>(share_new<ConeModel>(radius, height));
 }
 
 }  // namespace crumble

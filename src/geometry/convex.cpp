@@ -7,6 +7,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/base/transcendental.hpp"
 
@@ -57,8 +58,8 @@ void check_closed(const TriangleMesh& mesh) {
 }
 
 // One plane per flat face: triangles of the same plane share it; `plane_of` receives that of each triangle.
-std::vector<Plane> face_planes(const TriangleMesh& mesh, double size, std::vector<std::size_t>& plane_of) {
-  std::vector<Plane> planes;
+Vector<Plane> face_planes(const TriangleMesh& mesh, double size, Vector<std::size_t>& plane_of) {
+  Vector<Plane> planes;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 n = normalized(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
     const Plane plane{n, dot(n, mesh.vertices[a])};
@@ -71,8 +72,7 @@ std::vector<Plane> face_planes(const TriangleMesh& mesh, double size, std::vecto
   return planes;
 }
 
-FaceTable face_table(const std::vector<Plane>& planes, const TriangleMesh& mesh,
-                     const std::vector<std::size_t>& plane_of) {
+FaceTable face_table(const Vector<Plane>& planes, const TriangleMesh& mesh, const Vector<std::size_t>& plane_of) {
   FaceTable table;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     table.x.push_back(planes[i].normal.x());
@@ -114,14 +114,14 @@ double inscribed_radius(const ConvexPolyhedron& body) {
 // In a vertex the ball that fits best rolls along the axis whose greatest angle with the normals round it is least: the
 // center of the smallest cap that holds them (Badoiu and Clarkson 2003: toward the farthest one, by ever less). An edge
 // ends in vertices that are as sharp or sharper.
-double sharpest_sine(const ConvexPolyhedron& body, const std::vector<std::size_t>& plane_of) {
+double sharpest_sine(const ConvexPolyhedron& body, const Vector<std::size_t>& plane_of) {
   constexpr int kTurns = 200;
-  std::vector<std::vector<std::size_t>> planes_at(body.vertices.size());
+  Vector<Vector<std::size_t>> planes_at(body.vertices.size());
   for (std::size_t t = 0; t < plane_of.size(); ++t) {
     for (const std::uint32_t v : body.surface.triangles[t]) planes_at[v].push_back(plane_of[t]);
   }
   double sharpest = 1;
-  for (const std::vector<std::size_t>& planes : planes_at) {
+  for (const Vector<std::size_t>& planes : planes_at) {
     if (planes.empty()) continue;
     Vec3 center = body.planes[planes[0]].normal;
     double sine = 0;
@@ -151,7 +151,7 @@ double greatest_plane_distance(const ConvexPolyhedron& body, const Vec3& p, std:
   static_assert(FaceTable::kLanes == 4);
   const FaceTable& f = body.faces;
   const double px = p.x(), py = p.y(), pz = p.z();
-  const auto pair = [](const std::vector<double>& from, std::size_t i) {
+  const auto pair = [](const Vector<double>& from, std::size_t i) {
     Pair to;
     std::memcpy(&to, from.data() + i, sizeof to);
     return to;
@@ -212,7 +212,7 @@ ConvexPolyhedron make_convex(const TriangleMesh& mesh) {
   const double size = extent(mesh);
   check_triangles(mesh, size);
   check_closed(mesh);
-  std::vector<std::size_t> plane_of;
+  Vector<std::size_t> plane_of;
   ConvexPolyhedron body{face_planes(mesh, size, plane_of), mesh.vertices, mesh, 0, {}};
   body.faces = face_table(body.planes, mesh, plane_of);
   check_convex(body, size);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 
 TriangleMesh make_direction_sphere(int levels) {
@@ -22,7 +24,7 @@ TriangleMesh make_direction_sphere(int levels) {
       if (is_new) mesh.vertices.push_back(normalized(mesh.vertices[a] + mesh.vertices[b]));
       return at->second;
     };
-    std::vector<Triangle> finer;
+    Vector<Triangle> finer;
     for (const auto& [a, b, c] : mesh.triangles) {
       const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
       finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
@@ -32,8 +34,8 @@ TriangleMesh make_direction_sphere(int levels) {
   return mesh;
 }
 
-std::vector<std::vector<std::uint32_t>> neighbours_of(const TriangleMesh& mesh) {
-  std::vector<std::vector<std::uint32_t>> neighbours(mesh.vertices.size());
+Vector<Vector<std::uint32_t>> neighbours_of(const TriangleMesh& mesh) {
+  Vector<Vector<std::uint32_t>> neighbours(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {  // each edge runs the other way in the triangle beside it
     for (std::size_t k = 0; k < 3; ++k) neighbours[t[k]].push_back(t[(k + 1) % 3]);
   }

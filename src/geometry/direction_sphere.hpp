@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
 namespace crumble {
@@ -13,6 +13,6 @@ namespace crumble {
 TriangleMesh make_direction_sphere(int levels);
 
 /// For each vertex those that share an edge with it, ascending.
-std::vector<std::vector<std::uint32_t>> neighbours_of(const TriangleMesh& mesh);
+Vector<Vector<std::uint32_t>> neighbours_of(const TriangleMesh& mesh);
 
 }  // namespace crumble

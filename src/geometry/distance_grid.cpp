@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "geometry/mesh_distance_fcl.hpp"
 #include "geometry/winding_number.hpp"
 
@@ -42,15 +43,15 @@ DistanceGrid::DistanceGrid(const CheckedMesh& checked) {
     const double length = cell_ * static_cast<double>(counts_[static_cast<std::size_t>(axis)]);
     origin_[axis] = 0.5 * (low_[axis] + high_[axis]) - 0.5 * length;
   }
-  std::vector<Vec3> centers;
+  Vector<Vec3> centers;
   for (std::size_t i = 0; i < total; ++i) {
     centers.push_back(center_of({i % counts_[0], i / counts_[0] % counts_[1], i / counts_[0] / counts_[1]}));
   }
-  const std::vector<double> distances = distances_from_mesh(checked.mesh, centers);
+  const Vector<double> distances = distances_from_mesh(checked.mesh, centers);
   const double margin = kFclError * checked.size;
   clearance_.assign(total, 0);
-  std::vector<std::uint8_t> seen(total, 0);
-  std::vector<std::size_t> region;
+  Vector<std::uint8_t> seen(total, 0);
+  Vector<std::size_t> region;
   for (std::size_t i = 0; i < total; ++i) {
     const auto is_clear = [&](std::size_t c) { return distances[c] - margin > 0.5 * std::sqrt(3.0) * cell_; };
     if (seen[i] || !is_clear(i)) continue;

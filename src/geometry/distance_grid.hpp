@@ -1,8 +1,7 @@
 // A grid that tells, without a search, what is surely outside a mesh.
 #pragma once
 
-#include <vector>
-
+#include "crumble/base/memory.hpp"
 #include "geometry/mesh_checks.hpp"
 
 namespace crumble {
@@ -26,7 +25,7 @@ class DistanceGrid {
   Vec3 origin_ = Vec3::Zero();                     // of the grid
   double cell_ = 1;                                // edge, metres
   std::array<std::size_t, 3> counts_{};
-  std::vector<float> clearance_;  // metres
+  Vector<float> clearance_;  // metres
 };
 
 }  // namespace crumble

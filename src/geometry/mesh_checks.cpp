@@ -5,6 +5,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "geometry/triangle_overlap.hpp"
 #include "geometry/triangle_tree.hpp"
@@ -67,9 +68,9 @@ double size_of(const TriangleMesh& mesh) {
 
 // The triangles that have an area, and which of the caller's each was. Vertices keep their order: a solid that was
 // turned inside out is written and read back with the same numbers.
-TriangleMesh without_degenerate(const TriangleMesh& mesh, double size, std::vector<std::size_t>& origin) {
+TriangleMesh without_degenerate(const TriangleMesh& mesh, double size, Vector<std::size_t>& origin) {
   TriangleMesh kept;
-  std::vector<std::uint32_t> new_number(mesh.vertices.size(), kNone);
+  Vector<std::uint32_t> new_number(mesh.vertices.size(), kNone);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const Vec3 doubled = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
@@ -98,8 +99,8 @@ struct Edge {
 };
 
 // The other side of each edge; in a closed, oriented mesh it runs the other way.
-std::vector<std::uint32_t> pair_edges(const TriangleMesh& mesh, const std::vector<std::size_t>& origin, bool dropped) {
-  std::vector<Edge> edges;
+Vector<std::uint32_t> pair_edges(const TriangleMesh& mesh, const Vector<std::size_t>& origin, bool dropped) {
+  Vector<Edge> edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
@@ -107,7 +108,7 @@ std::vector<std::uint32_t> pair_edges(const TriangleMesh& mesh, const std::vecto
     }
   }
   std::sort(edges.begin(), edges.end());
-  std::vector<std::uint32_t> opposite(edges.size(), kNone);
+  Vector<std::uint32_t> opposite(edges.size(), kNone);
   std::uint32_t open = kNone, crowded = kNone, flipped = kNone;
   for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
     while (end < edges.size() && edges[end].low == edges[first].low && edges[end].high == edges[first].high) ++end;
@@ -135,9 +136,9 @@ std::vector<std::uint32_t> pair_edges(const TriangleMesh& mesh, const std::vecto
 }
 
 // Around a vertex all triangles can be reached over edges.
-void check_fans(const CheckedMesh& checked, const std::vector<std::size_t>& origin) {
+void check_fans(const CheckedMesh& checked, const Vector<std::size_t>& origin) {
   const auto& triangles = checked.mesh.triangles;
-  std::vector<std::uint32_t> corners(checked.mesh.vertices.size(), 0), start(checked.mesh.vertices.size(), kNone);
+  Vector<std::uint32_t> corners(checked.mesh.vertices.size(), 0), start(checked.mesh.vertices.size(), kNone);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       ++corners[triangles[t][k]];
@@ -164,9 +165,9 @@ double squared_area(const TriangleMesh& mesh, std::uint32_t t) {
 }
 
 // Greatest triangle of each connected part.
-std::vector<std::uint32_t> find_parts(const CheckedMesh& checked) {
-  std::vector<std::uint32_t> parts, open;
-  std::vector<bool> seen(checked.mesh.triangles.size());
+Vector<std::uint32_t> find_parts(const CheckedMesh& checked) {
+  Vector<std::uint32_t> parts, open;
+  Vector<bool> seen(checked.mesh.triangles.size());
   for (std::uint32_t first = 0; first < seen.size(); ++first) {
     if (seen[first]) continue;
     std::uint32_t greatest = first;
@@ -192,13 +193,13 @@ std::vector<std::uint32_t> find_parts(const CheckedMesh& checked) {
   return parts;
 }
 
-void check_crossings(const TriangleMesh& mesh, const std::vector<std::size_t>& origin, double size) {
+void check_crossings(const TriangleMesh& mesh, const Vector<std::size_t>& origin, double size) {
   const TriangleTree tree(mesh);
   const auto corners = [&](std::uint32_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
     return Corners{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
   };
-  std::vector<std::uint32_t> near;
+  Vector<std::uint32_t> near;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     tree.find_later_neighbours(mesh.triangles[t], t, mesh, near);
     const Corners here = corners(t);
@@ -211,7 +212,7 @@ void check_crossings(const TriangleMesh& mesh, const std::vector<std::size_t>& o
 }
 
 // Before each part the surface goes round nothing; behind it, once more than before it.
-void check_parts(const CheckedMesh& checked, const std::vector<std::size_t>& origin) {
+void check_parts(const CheckedMesh& checked, const Vector<std::size_t>& origin) {
   for (const std::uint32_t t : checked.parts) {
     const auto& [ia, ib, ic] = checked.mesh.triangles[t];
     const Vec3 &a = checked.mesh.vertices[ia], &b = checked.mesh.vertices[ib], &c = checked.mesh.vertices[ic];
@@ -231,7 +232,7 @@ CheckedMesh check_solid_mesh(const TriangleMesh& mesh, const MeshSolidOptions& o
   check_numbers(mesh);
   CheckedMesh checked;
   checked.size = size_of(mesh);
-  std::vector<std::size_t> origin;
+  Vector<std::size_t> origin;
   checked.mesh = without_degenerate(mesh, checked.size, origin);
   report.dropped_triangles = mesh.triangles.size() - checked.mesh.triangles.size();
   if (checked.mesh.triangles.size() < 4) throw Error(Code::mesh, "tool mesh has fewer than 4 triangles with an area");

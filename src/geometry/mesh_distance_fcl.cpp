@@ -8,6 +8,7 @@
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace crumble {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kRadius = 1e-6;  // of the ball, in units of the mesh's size
 
 }  // namespace
 
-std::vector<double> distances_from_mesh(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
+Vector<double> distances_from_mesh(const TriangleMesh& mesh, const Vector<Vec3>& points) {
   Vec3 low = mesh.vertices[0], high = low;
   for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
   const Vec3 center = 0.5 * (low + high);
@@ -34,7 +35,7 @@ std::vector<double> distances_from_mesh(const TriangleMesh& mesh, const std::vec
   const fcl::Sphere<double> ball(kRadius);
   const fcl::Transform3<double> still = fcl::Transform3<double>::Identity();
   fcl::Transform3<double> place = still;
-  std::vector<double> distances;
+  Vector<double> distances;
   for (const Vec3& p : points) {
     place.translation() = (p - center) / size;
     fcl::DistanceResult<double> result;

@@ -8,6 +8,7 @@
 
 #include "crumble/base/clock.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "geometry/angle.hpp"
 #include "geometry/distance_grid.hpp"
@@ -62,7 +63,7 @@ class MeshModel final : public SolidModel {
   CheckedMesh checked_;
   TriangleTree tree_;
   DistanceGrid grid_;
-  std::vector<Vec3> face_normals_, vertex_normals_;
+  Vector<Vec3> face_normals_, vertex_normals_;
 };
 
 MeshModel::MeshModel(CheckedMesh checked) : checked_(std::move(checked)), tree_(checked_.mesh), grid_(checked_) {
@@ -70,7 +71,7 @@ MeshModel::MeshModel(CheckedMesh checked) : checked_(std::move(checked)), tree_(
   make_normals();
   Vec3 low = surface_.vertices[0], high = low;
   for (const Vec3& v : surface_.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-  std::vector<Vec3> corners;
+  Vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) {
     corners.push_back({i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(), i & 4 ? high.z() : low.z()});
   }
@@ -118,7 +119,7 @@ SolidPoint MeshModel::judge(const Vec3& p, const TriangleTree::Nearest& found) c
 double MeshModel::sampled_half_thickness() const {
   constexpr std::size_t kPlaces = 1000;
   Random random(1);
-  std::vector<double> ways;
+  Vector<double> ways;
   const double step = area(surface_) / kPlaces;
   double passed = 0.5 * step;
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
@@ -155,7 +156,7 @@ Solid make_mesh_solid(const TriangleMesh& mesh, const MeshSolidOptions& options,
     }
   }
   if (!solid) {
-    auto model = std::make_shared<MeshModel>(std::move(checked));
+    auto model = share_new<MeshModel>(std::move(checked));
     found.grid_cells = model->grid_cells();
     solid = Solid(std::move(model));
   }

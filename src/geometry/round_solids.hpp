@@ -3,9 +3,9 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
@@ -29,7 +29,7 @@ inline void require_size(const char* field, double value) {
 
 /// The closed surface that `profile` sweeps when it turns about Z. Its first and last point lie on the axis, the first
 /// one lowest.
-inline TriangleMesh revolve(const std::vector<ProfilePoint>& profile) {
+inline TriangleMesh revolve(const Vector<ProfilePoint>& profile) {
   constexpr std::uint32_t kSides = 32;
   TriangleMesh mesh;
   mesh.vertices.push_back({0, 0, profile.front().z});

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
 #include "crumble/geometry/tool_solids.hpp"
 #include "geometry/solid_bytes.hpp"
 
 namespace crumble {
 
-void SolidModel::set_corners(const std::vector<Vec3>& corners) {
+void SolidModel::set_corners(const Vector<Vec3>& corners) {
   corners_ = VecArray((corners.size() + 3) / 4 * 4);
   for (std::size_t i = 0; i < corners_.size(); ++i) corners_.set(i, corners[std::min(i, corners.size() - 1)]);
 }
@@ -67,7 +68,7 @@ class PolyhedronModel final : public SolidModel {
 
 }  // namespace
 
-Solid::Solid(ConvexPolyhedron polyhedron) : model_(std::make_shared<PolyhedronModel>(std::move(polyhedron))) {}
+Solid::Solid(ConvexPolyhedron polyhedron) : model_(share_new<PolyhedronModel>(std::move(polyhedron))) {}
 
 double lowest_point(const SolidModel& solid, const Frame& frame) {
   double least = frame.to_scene(solid.corners()[0]).y();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
 #include "geometry/direction_sphere.hpp"
@@ -81,8 +82,8 @@ void SupportSamples::find_box() {
   }
 }
 
-std::vector<Vec3> SupportSamples::box_corners() const {
-  std::vector<Vec3> corners;
+Vector<Vec3> SupportSamples::box_corners() const {
+  Vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) {
     corners.push_back({i & 1 ? high_.x() : low_.x(), i & 2 ? high_.y() : low_.y(), i & 4 ? high_.z() : low_.z()});
   }
@@ -109,7 +110,7 @@ void SupportSamples::check(const Vec3& inside) const {
 
 TriangleMesh SupportSamples::make_surface() const {
   TriangleMesh surface;
-  std::vector<std::uint32_t> number;
+  Vector<std::uint32_t> number;
   for (const Vec3& point : points) {
     const auto known = std::find_if(surface.vertices.begin(), surface.vertices.end(),
                                     [&](const Vec3& v) { return norm(v - point) <= 1e-12 * size(); });

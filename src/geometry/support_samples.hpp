@@ -1,6 +1,7 @@
 // A convex set as its support function tells it along many directions.
 #pragma once
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/support_solid.hpp"
 
 namespace crumble {
@@ -21,15 +22,15 @@ class SupportSamples {
   double way_along(const Vec3& p, const Vec3& direction, double grown) const noexcept;
 
   double size() const noexcept { return norm(high_ - low_); }  // diagonal of the box, metres
-  std::vector<Vec3> box_corners() const;
+  Vector<Vec3> box_corners() const;
   /// The support points, equal ones made one, and the triangles that keep three corners.
   TriangleMesh make_surface() const;
 
-  std::vector<Vec3> directions;                        // unit
-  std::vector<Vec3> points;                            // support along them
-  std::vector<double> heights;                         // points . directions
-  std::vector<std::vector<std::uint32_t>> neighbours;  // of each direction
-  std::vector<double> squared_reach;                   // squared distance of its farthest neighbour
+  Vector<Vec3> directions;                   // unit
+  Vector<Vec3> points;                       // support along them
+  Vector<double> heights;                    // points . directions
+  Vector<Vector<std::uint32_t>> neighbours;  // of each direction
+  Vector<double> squared_reach;              // squared distance of its farthest neighbour
 
  private:
   void find_box();

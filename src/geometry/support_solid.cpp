@@ -276,7 +276,7 @@ Solid make_support_solid(const SupportFunction& support, const Vec3& inside) {
   require_finite("tool.inside.x", inside.x());
   require_finite("tool.inside.y", inside.y());
   require_finite("tool.inside.z", inside.z());
-  return Solid(std::make_shared<SupportModel>(support, inside));
+  return Solid(share_new<SupportModel>(support, inside));
 }
 
 }  // namespace crumble

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <map>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
 // Number of fans that the triangles around one vertex form; `spokes` maps each outgoing to its incoming neighbour.
-std::size_t count_fans(const std::vector<std::array<std::uint32_t, 2>>& spokes) {
-  std::vector<std::size_t> parent(spokes.size());
+std::size_t count_fans(const Vector<std::array<std::uint32_t, 2>>& spokes) {
+  Vector<std::size_t> parent(spokes.size());
   for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = i;
   const auto root = [&](std::size_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -67,7 +69,7 @@ double area(const TriangleMesh& mesh) {
 
 SurfaceDefects find_surface_defects(const TriangleMesh& mesh) {
   SurfaceDefects defects;
-  std::map<Triangle::value_type, std::vector<std::array<std::uint32_t, 2>>> spokes;
+  std::map<Triangle::value_type, Vector<std::array<std::uint32_t, 2>>> spokes;
   std::map<std::array<std::uint32_t, 2>, std::array<int, 2>> uses;  // undirected edge -> {along, against}
   for (const Triangle& t : mesh.triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) ++defects.degenerate_triangles;

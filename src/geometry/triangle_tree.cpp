@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -16,7 +18,7 @@ double greatest_coordinate(const Vec3& p) noexcept {
 }  // namespace
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
-  std::vector<Box> boxes;
+  Vector<Box> boxes;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 &va = mesh.vertices[a], &vb = mesh.vertices[b], &vc = mesh.vertices[c];
     boxes.push_back({va.cwiseMin(vb).cwiseMin(vc), va.cwiseMax(vb).cwiseMax(vc)});
@@ -31,7 +33,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   }
 }
 
-void TriangleTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t end, const std::vector<Box>& boxes) {
+void TriangleTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t end, const Vector<Box>& boxes) {
   Box box = boxes[triangles_[first]];
   for (std::uint32_t i = first + 1; i < end; ++i) {
     box = {box.low.cwiseMin(boxes[triangles_[i]].low), box.high.cwiseMax(boxes[triangles_[i]].high)};
@@ -155,7 +157,7 @@ TriangleTree::Exit TriangleTree::first_exit(const Vec3& p, const Vec3& direction
 }
 
 void TriangleTree::find_later_neighbours(const Triangle& corners, std::uint32_t triangle, const TriangleMesh& mesh,
-                                         std::vector<std::uint32_t>& found) const {
+                                         Vector<std::uint32_t>& found) const {
   const Vec3 &a = mesh.vertices[corners[0]], &b = mesh.vertices[corners[1]], &c = mesh.vertices[corners[2]];
   const Box box{a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
   found.clear();

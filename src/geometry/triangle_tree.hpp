@@ -8,8 +8,8 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
 namespace crumble {
@@ -37,7 +37,7 @@ class TriangleTree {
 
   /// Numbers of the triangles whose boxes meet that of `triangle` and that come after it, ascending.
   void find_later_neighbours(const Triangle& corners, std::uint32_t triangle, const TriangleMesh& mesh,
-                             std::vector<std::uint32_t>& found) const;
+                             Vector<std::uint32_t>& found) const;
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
@@ -55,15 +55,15 @@ class TriangleTree {
     Vec3 a, b, c;
   };
 
-  void build(std::uint32_t node, std::uint32_t first, std::uint32_t end, const std::vector<Box>& boxes);
+  void build(std::uint32_t node, std::uint32_t first, std::uint32_t end, const Vector<Box>& boxes);
   void consider(const Vec3& p, std::uint32_t slot, Nearest& best) const noexcept;
   static double squared_distance(const Box& box, const Vec3& p) noexcept;
   bool meets(const Box& box, const Vec3& p, const Vec3& direction, double way) const noexcept;
 
-  std::vector<Node> nodes_;
-  std::vector<Corners> corners_;          // by slot
-  std::vector<std::uint32_t> triangles_;  // by slot
-  double size_ = 0;                       // greatest coordinate
+  Vector<Node> nodes_;
+  Vector<Corners> corners_;          // by slot
+  Vector<std::uint32_t> triangles_;  // by slot
+  double size_ = 0;                  // greatest coordinate
 };
 
 }  // namespace crumble

@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/haptics/loop.hpp"
+#include "haptics/changes.hpp"
 
 namespace crumble::haptics {
 
@@ -26,18 +27,22 @@ using HandMask = std::uint32_t;
 /// Does the steps, whoever calls: tells publishers and recording.
 class Stepper {
  public:
-  Stepper(Simulation& sim, std::vector<std::uint32_t> holders) : sim_(sim), holders_(std::move(holders)) {}
+  Stepper(Simulation& sim, Vector<std::uint32_t> holders) : sim_(sim), holders_(std::move(holders)) {}
 
   /// Hands in `suspended` do not touch.
   void step(std::span<const Pose> poses, HandMask suspended) noexcept;
   /// All touch again, once they have been outside.
   void resume() noexcept { suspend(0); }
+  /// Makes the oldest change that waits, if there is one; step() does so too.
+  bool make_change() noexcept;
   const Simulation& sim() const noexcept { return sim_; }
   std::size_t hand_count() const noexcept { return holders_.size(); }
   std::uint32_t holder(std::size_t hand) const noexcept { return holders_[hand]; }
 
+  Changes changes;  // of the simulation's definition
+
   // While nobody steps
-  std::vector<StatePublisher*> publishers;
+  Vector<StatePublisher*> publishers;
   Recording* recording = nullptr;
 
  private:
@@ -46,11 +51,11 @@ class Stepper {
   void record(Add&& add) noexcept;
 
   Simulation& sim_;
-  std::vector<std::uint32_t> holders_;
+  Vector<std::uint32_t> holders_;
   HandMask suspended_ = 0;  // in the last step
 };
 
-class BodyLink {
+class BodyLink : public Allocated {
  public:
   virtual ~BodyLink() = default;
 

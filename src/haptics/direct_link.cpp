@@ -1,3 +1,4 @@
+#include "crumble/base/memory.hpp"
 #include "haptics/body_link.hpp"
 
 namespace crumble::haptics {
@@ -25,7 +26,7 @@ class DirectLink final : public BodyLink {
 
  private:
   Stepper& stepper_;
-  std::vector<Answer> answers_;
+  Vector<Answer> answers_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "crumble/base/clock.hpp"
+#include "crumble/base/memory.hpp"
 #include "haptics/loop_def.hpp"
 #include "haptics/loop_state.hpp"
 
@@ -12,8 +13,8 @@ namespace {
 constexpr double kWatchPeriod = 2e-3;
 constexpr double kStartTime = 1;  // s that a device may take to its first tick
 
-std::vector<std::uint32_t> holders_of(const LoopDef& def) {
-  std::vector<std::uint32_t> holders;
+Vector<std::uint32_t> holders_of(const LoopDef& def) {
+  Vector<std::uint32_t> holders;
   for (const HandDef& hand : def.hands) holders.push_back(hand.holder);
   return holders;
 }
@@ -74,7 +75,7 @@ const LoopDef& HapticLoop::definition() const noexcept {
   return state_->def;
 }
 
-const std::vector<std::string>& HapticLoop::warnings() const noexcept {
+const Vector<std::string>& HapticLoop::warnings() const noexcept {
   return state_->warnings;
 }
 
@@ -108,6 +109,7 @@ void HapticLoop::start() {
   State& s = *state_;
   if (s.running.exchange(true)) throw Error(Code::state, "the loop runs already");
   try {
+    s.stepper.changes.open(s.sim.definition());
     s.gate.wrote(s.driving ? wall_seconds() + kStartTime : 0);
     s.body->start();
     if (s.def.watchdog) {
@@ -127,6 +129,10 @@ void HapticLoop::start() {
   }
 }
 
+void HapticLoop::change(const std::function<void(SimulationDef&)>& edit) {
+  state_->stepper.changes.add(edit);
+}
+
 void HapticLoop::tick() noexcept {
   state_->tick();
 }
@@ -139,6 +145,9 @@ void HapticLoop::stop() noexcept {
     s.servo.stop();
     s.watchdog.stop();
     s.body->stop();
+    s.stepper.changes.close();
+    while (s.stepper.make_change()) {
+    }
   }
   for (haptics::HandChannel& hand : s.hands) hand.release();
   s.stepper.resume();

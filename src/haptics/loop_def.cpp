@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble::haptics {
@@ -119,8 +120,8 @@ LoopDef with_polled(LoopDef def, const Device* driving, std::deque<PolledDevice>
   return def;
 }
 
-std::vector<std::string> find_warnings(const LoopDef& def) {
-  std::vector<std::string> warnings;
+Vector<std::string> find_warnings(const LoopDef& def) {
+  Vector<std::string> warnings;
   for (std::size_t i = 0; i < def.hands.size(); ++i) {
     const HandDef& hand = def.hands[i];
     const DeviceInfo& info = hand.device->info();

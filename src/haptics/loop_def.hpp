@@ -3,8 +3,8 @@
 
 #include <deque>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/polled.hpp"
 #include "crumble/haptics/loop.hpp"
 
@@ -19,6 +19,6 @@ Device* driving_device(const LoopDef& def);
 /// With a PolledDevice round each device whose thread is not that of `driving`: its force is a tick late.
 LoopDef with_polled(LoopDef def, const Device* driving, std::deque<PolledDevice>& polled);
 /// What a spring that one knows beforehand will ask for and not get, in words.
-std::vector<std::string> find_warnings(const LoopDef& def);
+Vector<std::string> find_warnings(const LoopDef& def);
 
 }  // namespace crumble::haptics

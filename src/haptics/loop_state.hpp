@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/shared_value.hpp"
 #include "crumble/device/polled.hpp"
 #include "haptics/body_link.hpp"
@@ -12,7 +13,7 @@
 
 namespace crumble {
 
-struct HapticLoop::State {
+struct HapticLoop::State : Allocated {
   State(Simulation& simulation, LoopDef definition);
 
   void tick() noexcept;
@@ -26,14 +27,14 @@ struct HapticLoop::State {
   Device* driving;                  // device that calls the ticks; null: none does
   std::deque<PolledDevice> polled;  // round those with a thread of their own that do not drive
   LoopDef def;
-  std::vector<std::string> warnings;
+  Vector<std::string> warnings;
   Simulation& sim;
   haptics::Stepper stepper;
   std::unique_ptr<haptics::BodyLink> body;
   std::deque<haptics::HandChannel> hands;
   std::array<haptics::HandRequests, kMaxHands> requests;
-  std::vector<Pose> poses;  // by holder
-  std::vector<std::uint8_t> moved_by_hand;
+  Vector<Pose> poses;  // by holder
+  Vector<std::uint8_t> moved_by_hand;
 
   haptics::DeviceGate gate;
   haptics::PeriodicThread servo, watchdog;

@@ -12,6 +12,7 @@
 #include <array>
 
 #include "crumble/base/latest_value.hpp"
+#include "crumble/base/memory.hpp"
 #include "haptics/body_link.hpp"
 #include "haptics/periodic_thread.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr std::size_t kMean = 5;  // forces of Eq (7)
 
 struct Order {
-  std::vector<Pose> poses;  // by holder
+  Vector<Pose> poses;  // by holder
   HandMask suspended = 0;
   std::uint64_t order = 0;
 };
@@ -33,7 +34,7 @@ struct HandModel {
 };
 
 struct Packet {
-  std::vector<HandModel> hands;
+  Vector<HandModel> hands;
   Code status{};
   std::uint64_t order = 0, steps = 0;
   double time = 0;
@@ -60,8 +61,8 @@ class ModelLink final : public BodyLink {
         history_(stepper.hand_count()),
         jumps_(stepper.hand_count()),
         tools_(stepper.hand_count()),
-        orders_(Order{std::vector<Pose>(stepper.sim().holder_count()), 0, 0}),
-        answers_(Packet{std::vector<HandModel>(stepper.hand_count()), Code{}, 0, 0, 0}) {}
+        orders_(Order{Vector<Pose>(stepper.sim().holder_count()), 0, 0}),
+        answers_(Packet{Vector<HandModel>(stepper.hand_count()), Code{}, 0, 0, 0}) {}
   ~ModelLink() override { stop(); }
 
   Answer at(std::size_t hand, const Pose& tool) noexcept override {
@@ -161,10 +162,10 @@ class ModelLink final : public BodyLink {
   std::uint32_t ticks_;
   double tick_;
   // the stepping thread's
-  std::vector<std::array<Wrench, kMean>> history_;
+  Vector<std::array<Wrench, kMean>> history_;
   // the servo's
-  std::vector<Wrench> jumps_;  // old answer - new one, where the tool was when the new one came
-  std::vector<Pose> tools_;    // where the hands asked last
+  Vector<Wrench> jumps_;  // old answer - new one, where the tool was when the new one came
+  Vector<Pose> tools_;    // where the hands asked last
   std::uint32_t phase_ = 0;
   std::uint64_t since_ = 0;  // ticks since the newest answer came
   bool pending_ = false;

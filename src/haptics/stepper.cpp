@@ -3,10 +3,20 @@
 namespace crumble::haptics {
 
 void Stepper::step(std::span<const Pose> poses, HandMask suspended) noexcept {
+  make_change();
   suspend(suspended);
   sim_.step(poses);
   if (recording) record([&] { recording->add(poses, sim_.state_hash()); });
   for (StatePublisher* publisher : publishers) publisher->publish(sim_);
+}
+
+bool Stepper::make_change() noexcept {
+  Change* const change = changes.take();
+  if (!change) return false;
+  change->definition.apply_to(sim_);
+  if (recording) record([&] { recording->add_change(std::move(change->settings)); });
+  changes.give_back(change);
+  return true;
 }
 
 void Stepper::suspend(HandMask hands) noexcept {

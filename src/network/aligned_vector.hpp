@@ -2,21 +2,21 @@
 #pragma once
 
 #include <cstddef>
-#include <new>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 template <class T>
 struct LineAllocator {
   using value_type = T;
-  static constexpr std::align_val_t kLine{64};
+  static constexpr std::size_t kLine = 64;
 
   LineAllocator() = default;
   template <class U>
   LineAllocator(const LineAllocator<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, kLine); }
+  T* allocate(std::size_t n) { return static_cast<T*>(take_memory(n * sizeof(T), kLine)); }
+  void deallocate(T* p, std::size_t n) noexcept { give_memory_back(p, n * sizeof(T), kLine); }
   bool operator==(const LineAllocator&) const = default;
 };
 

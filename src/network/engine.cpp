@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/base/transcendental.hpp"
 
@@ -21,7 +22,7 @@ std::size_t padded(std::size_t count) {
 template <class Real>
 Engine<Real>::Engine(const SpringNetwork& network, const StepCoefficients& coefficients,
                      std::span<const Vec3> rest_positions, const SolverSettings& settings)
-    : layout_(std::make_shared<Layout>(make_layout(network, rest_positions))),
+    : layout_(share_new<Layout>(make_layout(network, rest_positions))),
       fixed_(make_fixed(network, coefficients, rest_positions, settings, *layout_)),
       kernels_(&find_kernels(settings.kernel)) {
   const std::size_t slots = padded(node_count());
@@ -46,9 +47,10 @@ Engine<Real>::Engine(const SpringNetwork& network, const StepCoefficients& coeff
   is_held_.resize(node_count());
   loose_slots_.resize(2 * node_count());
   loose_forces_.resize(2 * node_count());
+  gains_ = fixed_->gains;  // room for mend(), which takes none
   if (layout_->partitions.size() > 1) {
-    if (settings.host_threads.run != nullptr) team_ = std::make_shared<Team>(settings.host_threads);
-    if (!team_ && settings.threads > 1) team_ = std::make_shared<Team>(settings.threads);
+    if (settings.host_threads.run != nullptr) team_ = share_new<Team>(settings.host_threads);
+    if (!team_ && settings.threads > 1) team_ = share_new<Team>(settings.threads);
   }
   reset();
 }
@@ -59,7 +61,7 @@ std::shared_ptr<const typename Engine<Real>::Fixed> Engine<Real>::make_fixed(con
                                                                              std::span<const Vec3> rest_positions,
                                                                              const SolverSettings& settings,
                                                                              const Layout& layout) {
-  auto fixed = std::make_shared<Fixed>();
+  auto fixed = share_new<Fixed>();
   fixed->springs = network.springs;
   fixed->stiffnesses = network.stiffnesses;
   fixed->rest_lengths = network.rest_lengths;
@@ -74,7 +76,7 @@ std::shared_ptr<const typename Engine<Real>::Fixed> Engine<Real>::make_fixed(con
                                           : std::numeric_limits<Real>::infinity();
   fixed->cut_share = static_cast<Real>(settings.cut_share);
   for (const std::uint32_t node : layout.node_of) fixed->rest_positions.push_back(rest_positions[node]);
-  const auto by_slot = [&](const std::vector<double>& by_node, AlignedVector<Real>& out) {
+  const auto by_slot = [&](const Vector<double>& by_node, AlignedVector<Real>& out) {
     out.assign(padded(by_node.size()), 0);
     for (std::size_t slot = 0; slot < by_node.size(); ++slot)
       out[slot] = static_cast<Real>(by_node[layout.node_of[slot]]);
@@ -121,6 +123,17 @@ template <class Real>
 void Engine<Real>::reset() noexcept {
   for (std::uint32_t slot = 0; slot < node_count(); ++slot) store(slot, fixed_->rest_positions[slot], Vec3::Zero());
   for (std::size_t pad = node_count(); pad < at_.size(); ++pad) at_.set(pad, fixed_->rest_positions.back());
+  mend();
+  refresh();
+}
+
+template <class Real>
+void Engine<Real>::redefine(NetworkSolver& next) noexcept {
+  auto& other = static_cast<Engine&>(next);
+  fixed_.swap(other.fixed_);
+  std::swap(kernels_, other.kernels_);
+  team_.swap(other.team_);
+  frames_.swap_masses(other.frames_);
   mend();
   refresh();
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 #include "network/aligned_vector.hpp"
 #include "network/kernels.hpp"
@@ -49,6 +49,7 @@ class Engine final : public NetworkSolver {
   std::span<const std::uint32_t> inside(const Vec3& low, const Vec3& high) noexcept override;
   std::span<const std::uint32_t> behind(const Plane& plane) noexcept override;
 
+  void redefine(NetworkSolver& next) noexcept override;
   void set_external(VecView forces) noexcept override;
   void push(std::uint32_t node, const Vec3& force) noexcept override;
   void set_loose(const NodeGroups& groups) noexcept override;
@@ -84,18 +85,18 @@ class Engine final : public NetworkSolver {
 
   // what never changes, shared by copies
   struct Fixed {
-    std::vector<Edge> springs;                      // node numbers
-    std::vector<double> stiffnesses, rest_lengths;  // by spring
-    std::vector<Vec3> rest_positions;               // by slot
-    StepCoefficients coefficients;                  // by node
-    std::vector<double> masses;                     // by node
-    double spring_damping = 0;                      // N s/m
-    std::vector<double> damped;                     // by node: e^(-spring_damping tau / m), 1 for fixed ones
+    Vector<Edge> springs;                      // node numbers
+    Vector<double> stiffnesses, rest_lengths;  // by spring
+    Vector<Vec3> rest_positions;               // by slot
+    StepCoefficients coefficients;             // by node
+    Vector<double> masses;                     // by node
+    double spring_damping = 0;                 // N s/m
+    Vector<double> damped;                     // by node: e^(-spring_damping tau / m), 1 for fixed ones
     Gains gains;
-    std::vector<Way<Real>> ways;
-    std::vector<std::uint8_t> present;  // by block of lanes
-    std::vector<std::uint8_t> plain;    // by way, of the unbroken body
-    std::vector<std::uint32_t> way_of_block;
+    Vector<Way<Real>> ways;
+    Vector<std::uint8_t> present;  // by block of lanes
+    Vector<std::uint8_t> plain;    // by way, of the unbroken body
+    Vector<std::uint32_t> way_of_block;
     Real cut_share = 0;
     Real give = 0;  // 1 - 1 / l_p
   };
@@ -143,19 +144,19 @@ class Engine final : public NetworkSolver {
   Gains gains_;                                 // now: frozen nodes have none
   AlignedVector<Real> packed_, packed_force_;   // x y z 0 by slot; forces shifted as above
   AlignedVector<Real> stiffness_, rest_force_;  // by lane
-  std::vector<std::uint8_t> whole_;             // by lane, see ForcePass
-  std::vector<std::uint8_t> plain_;             // by way, see ForcePass
-  std::vector<Bounds<Real>> bounds_;            // by block
-  std::vector<std::uint32_t> found_;            // of the last search: slots, then nodes
-  std::vector<std::uint32_t> overlong_;         // lanes by partition, then springs
-  std::vector<std::size_t> overlong_of_;        // count by partition
+  Vector<std::uint8_t> whole_;                  // by lane, see ForcePass
+  Vector<std::uint8_t> plain_;                  // by way, see ForcePass
+  Vector<Bounds<Real>> bounds_;                 // by block
+  Vector<std::uint32_t> found_;                 // of the last search: slots, then nodes
+  Vector<std::uint32_t> overlong_;              // lanes by partition, then springs
+  Vector<std::size_t> overlong_of_;             // count by partition
   std::size_t overlong_count_ = 0;
-  std::vector<std::uint32_t> lost_of_;  // by partition
-  std::vector<Held> held_;
+  Vector<std::uint32_t> lost_of_;  // by partition
+  Vector<Held> held_;
   RigidFrames frames_;
-  std::vector<std::uint32_t> loose_slots_, loose_forces_;  // by place: slot, and where its force is
+  Vector<std::uint32_t> loose_slots_, loose_forces_;  // by place: slot, and where its force is
   double holder_work_ = 0;
-  std::vector<std::uint8_t> is_held_;      // by node, for damp_springs()
+  Vector<std::uint8_t> is_held_;           // by node, for damp_springs()
   std::uint32_t lost_from_frame_ = kNone;  // slot
 };
 

@@ -4,12 +4,13 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 
 namespace crumble {
 
-std::vector<std::string> kernel_names() {
-  std::vector<std::string> names{scalar_kernels().name};
+Vector<std::string> kernel_names() {
+  Vector<std::string> names{scalar_kernels().name};
   for (const KernelSet* set : simd_kernels()) names.emplace_back(set->name);
   return names;
 }

@@ -2,6 +2,7 @@
 // what is computed. Only operations whose result IEEE 754 fixes are used: no fused multiply-add, no approximate root.
 #include <cstring>
 #include <type_traits>
+#include <vector>
 
 #include "network/kernels.hpp"
 
@@ -500,12 +501,11 @@ HWY_AFTER_NAMESPACE();
 #endif  // a target with vectors
 
 #if HWY_ONCE
-#include <vector>
 
 namespace crumble {
 
 std::span<const KernelSet* const> simd_kernels() {
-  static const std::vector<const KernelSet*> kSets = [] {
+  static const std::vector<const KernelSet*> kSets = [] {  // never given back: not of the host's memory
     std::vector<const KernelSet*> sets;
 #if HWY_ARCH_X86
     __builtin_cpu_init();

@@ -5,6 +5,8 @@
 #include <memory>
 #include <numeric>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -18,15 +20,15 @@ constexpr std::size_t kPartitionSprings = 50'000;
 constexpr std::uint32_t kMostPartitions = 8;
 
 // By lower slot, those with the greatest offset first.
-std::vector<Link> sorted_links(const SpringNetwork& network, const std::vector<std::uint32_t>& slot_of) {
-  std::vector<std::uint32_t> begin(slot_of.size() + 1, 0);
+Vector<Link> sorted_links(const SpringNetwork& network, const Vector<std::uint32_t>& slot_of) {
+  Vector<std::uint32_t> begin(slot_of.size() + 1, 0);
   const auto ends = [&](std::uint32_t s) {
     return std::minmax(slot_of[network.springs[s][0]], slot_of[network.springs[s][1]]);
   };
   for (std::uint32_t s = 0; s < network.spring_count(); ++s) ++begin[ends(s).first + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Link> links(network.spring_count());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  Vector<Link> links(network.spring_count());
+  Vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
   for (std::uint32_t s = 0; s < network.spring_count(); ++s) {
     const auto [lower, upper] = ends(s);
     links[next[lower]++] = {lower, upper - lower, s};
@@ -51,10 +53,10 @@ class SegmentFinder {
   }
 
   struct Found {
-    std::vector<Segment> segments;
-    std::vector<std::uint32_t> offsets;
-    std::vector<std::uint32_t> spring_of_lane;
-    std::vector<Link> others;
+    Vector<Segment> segments;
+    Vector<std::uint32_t> offsets;
+    Vector<std::uint32_t> spring_of_lane;
+    Vector<Link> others;
   };
 
   Found find() {
@@ -73,8 +75,8 @@ class SegmentFinder {
 
   // Offsets, descending, that at least `least` free springs of the slots [first, first + blocks * kLanes) have; none
   // when no spring of `first` itself has one of them.
-  std::vector<std::uint32_t> common_ways(std::uint32_t first, std::uint32_t blocks, std::size_t least) {
-    std::vector<std::uint32_t> ways;
+  Vector<std::uint32_t> common_ways(std::uint32_t first, std::uint32_t blocks, std::size_t least) {
+    Vector<std::uint32_t> ways;
     bool starts_here = false;
     tally_.clear();
     for (std::size_t l = begin_[first]; l < begin_[first + blocks * kLanes]; ++l) {
@@ -95,8 +97,8 @@ class SegmentFinder {
 
   // Ways next to each other in order often differ by 1: their stores and loads, all but a lane the same, would wait for
   // each other.
-  static std::vector<std::uint32_t> every_other(const std::vector<std::uint32_t>& ways) {
-    std::vector<std::uint32_t> order;
+  static Vector<std::uint32_t> every_other(const Vector<std::uint32_t>& ways) {
+    Vector<std::uint32_t> order;
     for (const std::size_t first : {0u, 1u}) {
       for (std::size_t w = first; w < ways.size(); w += 2) order.push_back(ways[w]);
     }
@@ -110,7 +112,7 @@ class SegmentFinder {
     return false;
   }
 
-  std::size_t count_free(std::uint32_t slot, const std::vector<std::uint32_t>& ways) const {
+  std::size_t count_free(std::uint32_t slot, const Vector<std::uint32_t>& ways) const {
     std::size_t count = 0;
     for (std::size_t l = begin_[slot]; l < begin_[slot + kLanes]; ++l) {
       count += !taken_[l] && std::ranges::find(ways, links_[l].offset) != ways.end();
@@ -120,7 +122,7 @@ class SegmentFinder {
 
   // As many blocks as are filled well with the ways of the first, then all ways that fill these well.
   bool add_segment(std::uint32_t first) {
-    std::vector<std::uint32_t> ways = common_ways(first, 1, kLeastInBlock);
+    Vector<std::uint32_t> ways = common_ways(first, 1, kLeastInBlock);
     if (ways.empty()) return false;
     const std::uint32_t end = *std::ranges::upper_bound(ends_, first);
     std::uint32_t blocks = 1;
@@ -128,7 +130,7 @@ class SegmentFinder {
            static_cast<double>(count_free(first + blocks * kLanes, ways)) >=
                kLeastUse * kLanes * static_cast<double>(ways.size()))
       ++blocks;
-    std::vector<std::uint32_t> all_ways = common_ways(first, blocks, blocks * kLeastInBlock);
+    Vector<std::uint32_t> all_ways = common_ways(first, blocks, blocks * kLeastInBlock);
     if (all_ways.empty()) {
       blocks = 1;
     } else {
@@ -138,7 +140,7 @@ class SegmentFinder {
     return true;
   }
 
-  void take(std::uint32_t first, std::uint32_t blocks, const std::vector<std::uint32_t>& ways) {
+  void take(std::uint32_t first, std::uint32_t blocks, const Vector<std::uint32_t>& ways) {
     const auto lane = static_cast<std::uint32_t>(found_.spring_of_lane.size());
     found_.segments.push_back({first, blocks, static_cast<std::uint32_t>(found_.offsets.size()),
                                static_cast<std::uint32_t>(ways.size()), lane});
@@ -154,22 +156,22 @@ class SegmentFinder {
   }
 
   std::span<const Link> links_;
-  std::vector<std::size_t> begin_;  // of the links of each slot
-  std::vector<std::uint8_t> taken_;
+  Vector<std::size_t> begin_;  // of the links of each slot
+  Vector<std::uint8_t> taken_;
   std::span<const std::uint32_t> ends_;
-  std::vector<std::uint32_t> tally_;
+  Vector<std::uint32_t> tally_;
   Found found_;
 };
 
-std::size_t springs_in_segments(const SpringNetwork& network, const std::vector<std::uint32_t>& slot_of) {
-  const std::vector<Link> links = sorted_links(network, slot_of);
+std::size_t springs_in_segments(const SpringNetwork& network, const Vector<std::uint32_t>& slot_of) {
+  const Vector<Link> links = sorted_links(network, slot_of);
   const std::uint32_t end = kNone;
   return links.size() -
          SegmentFinder(links, static_cast<std::uint32_t>(slot_of.size()), {&end, 1}).find().others.size();
 }
 
-std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> place(order.size());
+Vector<std::uint32_t> inverse(std::span<const std::uint32_t> order) {
+  Vector<std::uint32_t> place(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
   return place;
 }
@@ -179,9 +181,9 @@ void order_nodes(const SpringNetwork& network, std::span<const Vec3> positions, 
   layout.node_of.resize(network.node_count());
   std::iota(layout.node_of.begin(), layout.node_of.end(), 0u);
   layout.slot_of = layout.node_of;
-  std::vector<std::uint32_t> by_rows = row_order(network, positions);
-  std::vector<std::uint32_t> slot_of = inverse(by_rows);
-  const auto reach = [&](const std::vector<std::uint32_t>& slots) {
+  Vector<std::uint32_t> by_rows = row_order(network, positions);
+  Vector<std::uint32_t> slot_of = inverse(by_rows);
+  const auto reach = [&](const Vector<std::uint32_t>& slots) {
     std::uint64_t sum = 0;
     for (const auto& [a, b] : network.springs) sum += std::max(slots[a], slots[b]) - std::min(slots[a], slots[b]);
     return sum;
@@ -199,12 +201,12 @@ std::uint32_t round_up(std::uint32_t n, std::uint32_t multiple) {
 }
 
 // Slots where a partition ends: equal numbers of springs, multiples of kPadding, none shorter than the halo.
-std::vector<std::uint32_t> partition_ends(std::span<const Link> links, std::uint32_t node_count, std::uint32_t halo) {
+Vector<std::uint32_t> partition_ends(std::span<const Link> links, std::uint32_t node_count, std::uint32_t halo) {
   const auto wanted =
       static_cast<std::uint32_t>(std::min<std::size_t>(kMostPartitions, links.size() / (kPartitionSprings / 2)));
-  std::vector<std::uint32_t> lower_ends(node_count + 1, 0);
+  Vector<std::uint32_t> lower_ends(node_count + 1, 0);
   for (const Link& link : links) ++lower_ends[link.lower];
-  std::vector<std::uint32_t> ends;
+  Vector<std::uint32_t> ends;
   std::uint64_t sum = 0;
   for (std::uint32_t slot = 0; slot < node_count && wanted > 1 && links.size() >= kPartitionSprings; ++slot) {
     sum += lower_ends[slot];
@@ -228,7 +230,7 @@ class BatchMaker {
 
   void make(std::span<const Link> links) {
     std::size_t next = 0;
-    std::vector<Link> window;
+    Vector<Link> window;
     while (next < links.size() || !window.empty()) {
       while (next < links.size() && window.size() < kWindow) window.push_back(links[next++]);
       begin_batch();
@@ -272,10 +274,10 @@ class BatchMaker {
 
   Layout& layout_;
   std::uint32_t first_, batch_number_ = 0, filled_ = 0;
-  std::vector<std::uint32_t> last_use_;
+  Vector<std::uint32_t> last_use_;
 };
 
-void add_groups(const Layout& layout, std::span<const std::uint32_t> ends, std::vector<Partition>& partitions) {
+void add_groups(const Layout& layout, std::span<const std::uint32_t> ends, Vector<Partition>& partitions) {
   for (std::size_t p = 0; p < partitions.size(); ++p) {
     for (std::uint32_t b = partitions[p].first_batch; b < partitions[p].end_batch; ++b) {
       for (std::uint32_t l = 0; l < kLanes; ++l) {
@@ -303,12 +305,12 @@ void add_groups(const Layout& layout, std::span<const std::uint32_t> ends, std::
 Layout make_layout(const SpringNetwork& network, std::span<const Vec3> positions) {
   Layout layout;
   order_nodes(network, positions, layout);
-  const std::vector<Link> links = sorted_links(network, layout.slot_of);
+  const Vector<Link> links = sorted_links(network, layout.slot_of);
   std::uint32_t farthest = 0;
   for (const Link& link : links) farthest = std::max(farthest, link.offset);
   // a block reaches up to kLanes - 1 slots past its last spring
   const std::uint32_t reach = round_up(farthest + 2 * kLanes, kLanes);
-  const std::vector<std::uint32_t> ends = partition_ends(links, layout.node_count(), reach);
+  const Vector<std::uint32_t> ends = partition_ends(links, layout.node_count(), reach);
   layout.halo = ends.size() > 1 ? reach : 0;
 
   SegmentFinder::Found found = SegmentFinder(links, layout.node_count(), ends).find();

@@ -21,8 +21,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 #include "crumble/network/spring_network.hpp"
 
@@ -49,21 +49,21 @@ struct Partition {
   std::uint32_t first, end;  // slots
   std::uint32_t first_segment, end_segment;
   std::uint32_t first_batch, end_batch;
-  std::vector<std::uint32_t> own_groups;   // groups of kLanes slots of this partition that some batch touches
-  std::vector<std::uint32_t> halo_groups;  // groups beyond its end that its own batches touch
+  Vector<std::uint32_t> own_groups;   // groups of kLanes slots of this partition that some batch touches
+  Vector<std::uint32_t> halo_groups;  // groups beyond its end that its own batches touch
 };
 
 struct Layout {
-  std::vector<std::uint32_t> slot_of;  // (node_count)
-  std::vector<std::uint32_t> node_of;  // (node_count)
-  std::uint32_t halo = 0;              // slots beyond a partition's end that its springs reach; multiple of kLanes
-  std::vector<Segment> segments;       // by partition, then by first slot
-  std::vector<std::uint32_t> offsets;  // of the ways: upper slot - lower slot
-  std::vector<Batch> batches;          // by partition
-  std::uint32_t batch_lanes = 0;       // lane of the first batch's first spring
-  std::vector<std::uint32_t> spring_of_lane;  // kNone where there is none (lane_count)
-  std::vector<std::uint32_t> lane_of_spring;  // (spring_count)
-  std::vector<Partition> partitions;
+  Vector<std::uint32_t> slot_of;         // (node_count)
+  Vector<std::uint32_t> node_of;         // (node_count)
+  std::uint32_t halo = 0;                // slots beyond a partition's end that its springs reach; multiple of kLanes
+  Vector<Segment> segments;              // by partition, then by first slot
+  Vector<std::uint32_t> offsets;         // of the ways: upper slot - lower slot
+  Vector<Batch> batches;                 // by partition
+  std::uint32_t batch_lanes = 0;         // lane of the first batch's first spring
+  Vector<std::uint32_t> spring_of_lane;  // kNone where there is none (lane_count)
+  Vector<std::uint32_t> lane_of_spring;  // (spring_count)
+  Vector<Partition> partitions;
   bool sorted = false;  // slots are not the node numbers
 
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(node_of.size()); }
@@ -76,6 +76,6 @@ Layout make_layout(const SpringNetwork& network, std::span<const Vec3> positions
 
 /// Nodes by layer (y), row (z) and place (x): new order as node numbers. A layer ends where y has risen by 0.6 mean
 /// spring lengths, so that the layers of a crystal are found as they are.
-std::vector<std::uint32_t> row_order(const SpringNetwork& network, std::span<const Vec3> positions);
+Vector<std::uint32_t> row_order(const SpringNetwork& network, std::span<const Vec3> positions);
 
 }  // namespace crumble

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "network/engine.hpp"
 
 namespace crumble {
@@ -45,7 +46,7 @@ void Engine<Real>::set_loose(const NodeGroups& groups) noexcept {
 
 namespace {
 
-std::vector<double>& axis_of(VecArray& array, std::size_t axis) {
+Vector<double>& axis_of(VecArray& array, std::size_t axis) {
   return axis == 0 ? array.x : axis == 1 ? array.y : array.z;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "crumble/base/memory.hpp"
 #include "network/layout.hpp"
 
 namespace crumble {
@@ -9,7 +10,7 @@ namespace {
 // Numbers the steps of `value` along `order`, which is sorted by it: a new one begins where it has risen by `height`
 // since the step began.
 void number_steps(std::span<const std::uint32_t> order, std::span<const double> value, double height,
-                  std::vector<std::uint32_t>& step_of) {
+                  Vector<std::uint32_t>& step_of) {
   std::uint32_t step = 0;
   double begin = value[order[0]];
   for (const std::uint32_t node : order) {
@@ -18,8 +19,8 @@ void number_steps(std::span<const std::uint32_t> order, std::span<const double> 
   }
 }
 
-std::vector<double> component(std::span<const Vec3> positions, int axis) {
-  std::vector<double> values;
+Vector<double> component(std::span<const Vec3> positions, int axis) {
+  Vector<double> values;
   values.reserve(positions.size());
   for (const Vec3& p : positions) values.push_back(p[axis]);
   return values;
@@ -27,13 +28,13 @@ std::vector<double> component(std::span<const Vec3> positions, int axis) {
 
 }  // namespace
 
-std::vector<std::uint32_t> row_order(const SpringNetwork& network, std::span<const Vec3> positions) {
+Vector<std::uint32_t> row_order(const SpringNetwork& network, std::span<const Vec3> positions) {
   double length = 0;
   for (const double l : network.rest_lengths) length += l;
   const double height = 0.6 * length / static_cast<double>(network.spring_count());
 
-  const std::vector<double> x = component(positions, 0), y = component(positions, 1), z = component(positions, 2);
-  std::vector<std::uint32_t> order(positions.size()), layer(positions.size()), row(positions.size());
+  const Vector<double> x = component(positions, 0), y = component(positions, 1), z = component(positions, 2);
+  Vector<std::uint32_t> order(positions.size()), layer(positions.size()), row(positions.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, [&](auto a, auto b) { return y[a] < y[b]; });
   number_steps(order, y, height, layer);

@@ -12,8 +12,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/network/solver.hpp"
@@ -36,6 +36,8 @@ class RigidFrames {
   explicit RigidFrames(std::span<const double> masses);
 
   void set(const NodeGroups& groups) noexcept;
+  /// Of the nodes; set() has to follow.
+  void swap_masses(RigidFrames& other) noexcept { node_masses_.swap(other.node_masses_); }
   bool empty() const noexcept { return groups_.empty(); }
   /// Nodes group by group; a node's index in here is its place. kNoNode where a group of odd size is made even.
   std::span<const std::uint32_t> nodes() const noexcept { return nodes_; }
@@ -83,10 +85,10 @@ class RigidFrames {
   void slow_down(Group& group, double tau) noexcept;
   void join_group(const Group& group, double tau) noexcept;
 
-  std::vector<double> node_masses_;
+  Vector<double> node_masses_;
   ReservedVector<std::uint32_t> nodes_;
-  std::vector<std::uint32_t> place_of_, group_of_;  // by node, by place
-  std::vector<double> masses_;                      // by place; 0 where there is no node
+  Vector<std::uint32_t> place_of_, group_of_;  // by node, by place
+  Vector<double> masses_;                      // by place; 0 where there is no node
   ReservedVector<Group> groups_;
   ReservedVector<Brake> brakes_;
   double brake_work_ = 0;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble {
@@ -26,7 +27,7 @@ void check(const Material& material) {
   }
 }
 
-void share_mass(const TetMesh& mesh, double mass, MassRule rule, std::vector<double>& masses) {
+void share_mass(const TetMesh& mesh, double mass, MassRule rule, Vector<double>& masses) {
   const auto n = static_cast<double>(mesh.node_count());
   const double body_volume = volume(mesh);
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
@@ -36,7 +37,7 @@ void share_mass(const TetMesh& mesh, double mass, MassRule rule, std::vector<dou
 
 // Eq (2): c_i = 2 sqrt(k_max m_i alpha^2)
 void set_drags(const Material& material, SpringNetwork& network) {
-  std::vector<double> greatest(network.node_count(), 0);
+  Vector<double> greatest(network.node_count(), 0);
   network.stiffness_sums.assign(network.node_count(), 0);
   for (std::size_t s = 0; s < network.spring_count(); ++s) {
     for (const std::uint32_t node : network.springs[s]) {

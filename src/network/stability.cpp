@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/base/transcendental.hpp"
 
@@ -30,7 +31,7 @@ double stability_limit(double gamma) {
 
 double largest_eigenvalue(const SpringNetwork& network, std::span<const Vec3> rest_positions) {
   Random random(1);
-  std::vector<Vec3> v(network.node_count()), kv(network.node_count());
+  Vector<Vec3> v(network.node_count()), kv(network.node_count());
   for (Vec3& each : v) each = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   double lambda = 0;
   for (int round = 0; round < 20000; ++round) {

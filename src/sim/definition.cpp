@@ -1,6 +1,7 @@
 #include "crumble/sim/definition.hpp"
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
@@ -25,8 +26,8 @@ void apply_paper_preset(SimulationDef& def) {
 namespace {
 
 template <class Has>
-std::vector<std::uint32_t> nodes_where(const TetMesh& mesh, Has&& has) {
-  std::vector<std::uint32_t> nodes;
+Vector<std::uint32_t> nodes_where(const TetMesh& mesh, Has&& has) {
+  Vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
     if (has(mesh.positions[i])) nodes.push_back(i);
   }
@@ -35,18 +36,18 @@ std::vector<std::uint32_t> nodes_where(const TetMesh& mesh, Has&& has) {
 
 }  // namespace
 
-std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height) {
+Vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height) {
   return nodes_where(mesh, [&](const Vec3& p) { return p.y() <= height; });
 }
 
-std::vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high) {
+Vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high) {
   return nodes_where(mesh, [&](const Vec3& p) {
     return p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y() && p.z() >= low.z() &&
            p.z() <= high.z();
   });
 }
 
-std::vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane) {
+Vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane) {
   return nodes_where(mesh, [&](const Vec3& p) { return dot(plane.normal, p) <= plane.offset; });
 }
 
@@ -71,27 +72,27 @@ E get_enum(ByteReader& in, std::uint8_t last, const char* what) {
 }
 
 template <std::size_t N>
-void put_indices(ByteWriter& out, const std::vector<std::array<std::uint32_t, N>>& rows) {
+void put_indices(ByteWriter& out, const Vector<std::array<std::uint32_t, N>>& rows) {
   out.put(std::span(reinterpret_cast<const std::uint32_t*>(rows.data()), rows.size() * N));
 }
 
 template <std::size_t N>
-std::vector<std::array<std::uint32_t, N>> get_indices(ByteReader& in) {
+Vector<std::array<std::uint32_t, N>> get_indices(ByteReader& in) {
   const auto flat = in.get_vector<std::uint32_t>();
-  std::vector<std::array<std::uint32_t, N>> rows(flat.size() / N);
+  Vector<std::array<std::uint32_t, N>> rows(flat.size() / N);
   for (std::size_t i = 0; i < rows.size() * N; ++i) rows[i / N][i % N] = flat[i];
   return rows;
 }
 
-void put(ByteWriter& out, const std::vector<Vec3>& points) {
+void put(ByteWriter& out, const Vector<Vec3>& points) {
   out.put(static_cast<std::uint64_t>(points.size()));
   for (const Vec3& p : points) put(out, p);
 }
 
-std::vector<Vec3> get_points(ByteReader& in) {
+Vector<Vec3> get_points(ByteReader& in) {
   const auto count = in.get<std::uint64_t>();
   if (count > in.left() / (3 * sizeof(double))) throw Error(Code::corrupt, "recording is truncated in its points");
-  std::vector<Vec3> points(static_cast<std::size_t>(count));
+  Vector<Vec3> points(static_cast<std::size_t>(count));
   for (Vec3& p : points) p = get_vector(in);
   return points;
 }
@@ -127,8 +128,7 @@ void put(ByteWriter& out, const StepSettings& s) {
   out.put(static_cast<std::uint8_t>(s.surface_samples)), out.put(static_cast<std::uint8_t>(s.ball_contact));
 }
 
-StepSettings get_settings(ByteReader& in) {
-  StepSettings s;
+void get_settings(ByteReader& in, StepSettings& s) {
   s.tau = in.get<double>();
   s.policy = get_enum<TimeStepPolicy>(in, 3, "time-step policy");
   s.iterations = in.get<std::uint32_t>();
@@ -140,7 +140,6 @@ StepSettings get_settings(ByteReader& in) {
   s.drag_frame = get_enum<DragFrame>(in, 1, "drag frame");
   s.surface_samples = in.get<std::uint8_t>() != 0;
   s.ball_contact = in.get<std::uint8_t>() != 0;
-  return s;
 }
 
 }  // namespace
@@ -151,6 +150,10 @@ void write_definition(const SimulationDef& def, ByteWriter& out) {
   put(out, def.mesh.positions);
   put_indices(out, def.mesh.tetrahedra);
   for (const NodeKind kind : def.mesh.kinds) out.put(static_cast<std::uint8_t>(kind));
+  write_settings(def, out);
+}
+
+void write_settings(const SimulationDef& def, ByteWriter& out) {
   for (const double v : {def.material.stiffness, def.material.damping_ratio, def.material.spring_damping,
                          def.material.length_limit, def.material.mass}) {
     out.put(v);
@@ -180,9 +183,14 @@ SimulationDef read_definition(ByteReader& in) {
   SimulationDef def;
   auto positions = get_points(in);
   auto tetrahedra = get_indices<4>(in);
-  std::vector<NodeKind> kinds(positions.size());
+  Vector<NodeKind> kinds(positions.size());
   for (NodeKind& kind : kinds) kind = get_enum<NodeKind>(in, 3, "node kind");
   def.mesh = make_tet_mesh(std::move(positions), std::move(tetrahedra), std::move(kinds));
+  read_settings(in, def);
+  return def;
+}
+
+void read_settings(ByteReader& in, SimulationDef& def) {
   for (double* v : {&def.material.stiffness, &def.material.damping_ratio, &def.material.spring_damping,
                     &def.material.length_limit, &def.material.mass}) {
     *v = in.get<double>();
@@ -190,7 +198,7 @@ SimulationDef read_definition(ByteReader& in) {
   def.mass_rule = get_enum<MassRule>(in, 1, "mass rule");
   def.fixed_nodes = in.get_vector<std::uint32_t>();
   def.gravity = get_vector(in);
-  def.walls.clear();
+  def.walls.clear(), def.tools.clear(), def.attachments.clear();
   for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
     const Vec3 normal = get_vector(in);
     const auto offset = in.get<double>();
@@ -205,8 +213,7 @@ SimulationDef read_definition(ByteReader& in) {
     def.attachments.push_back({in.get_vector<std::uint32_t>()});
   }
   def.ball_friction = get_friction(in);
-  def.step = get_settings(in);
-  return def;
+  get_settings(in, def.step);
 }
 
 }  // namespace crumble

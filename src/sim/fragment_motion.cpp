@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/simulation.hpp"
 
 namespace crumble {
@@ -14,13 +15,13 @@ constexpr std::uint32_t kNotLoose = 0xffffffffu;
 std::optional<BallContacts> Simulation::make_balls() const {
   if (!def_.step.ball_contact) return {};
   const std::size_t nodes = network_.node_count();
-  std::vector<double> lengths(nodes), stiffnesses(nodes), counts(nodes);
+  Vector<double> lengths(nodes), stiffnesses(nodes), counts(nodes);
   for (std::size_t s = 0; s < network_.spring_count(); ++s) {
     for (const std::uint32_t node : network_.springs[s]) {
       lengths[node] += network_.rest_lengths[s], stiffnesses[node] += network_.stiffnesses[s], counts[node] += 1;
     }
   }
-  std::vector<std::uint8_t> on_surface;
+  Vector<std::uint8_t> on_surface;
   for (std::size_t i = 0; i < nodes; ++i) {
     lengths[i] *= 0.5 / counts[i], stiffnesses[i] /= counts[i];  // half the mean length: the ball's radius
     on_surface.push_back(def_.mesh.kinds[i] != NodeKind::inside);
@@ -39,7 +40,7 @@ void Simulation::regroup(std::uint64_t now, std::span<const std::uint32_t> cuts)
 // Loose are fragments that are active and have no fixed node. One that has just come off goes with its parent until the
 // springs between them have faded: they would throw a crumb that nothing brakes any more.
 void Simulation::find_loose_fragments(std::uint64_t now) noexcept {
-  std::vector<std::uint32_t>& group_of = loose_group_of_;
+  Vector<std::uint32_t>& group_of = loose_group_of_;
   find_leaders(now);
   std::uint32_t groups = 0;
   std::fill(loose_first_.begin(), loose_first_.begin() + fragments_.count() + 1, 0u);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/sim/simulation.hpp"
 
@@ -43,14 +44,14 @@ void Simulation::set_node_forces(VecView forces) {
 }
 
 bool Simulation::has_node_forces() const noexcept {
-  const auto any = [](const std::vector<double>& axis) {
+  const auto any = [](const Vector<double>& axis) {
     return std::any_of(axis.begin(), axis.end(), [](double force) { return force != 0; });
   };
   return any(node_forces_.x) || any(node_forces_.y) || any(node_forces_.z);
 }
 
 void Simulation::clear_node_forces() noexcept {
-  for (std::vector<double>* axis : {&node_forces_.x, &node_forces_.y, &node_forces_.z}) {
+  for (Vector<double>* axis : {&node_forces_.x, &node_forces_.y, &node_forces_.z}) {
     std::fill(axis->begin(), axis->end(), 0.0);
   }
   apply_node_forces();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -28,7 +30,7 @@ std::size_t slices_of(std::size_t nodes) {
 
 // Copies one of `slices` equal parts.
 template <class T>
-void copy_part(std::span<const T> from, std::vector<T>& to, std::size_t slice, std::size_t slices) {
+void copy_part(std::span<const T> from, Vector<T>& to, std::size_t slice, std::size_t slices) {
   const std::size_t begin = from.size() * slice / slices, end = from.size() * (slice + 1) / slices;
   std::copy(from.begin() + begin, from.begin() + end, to.begin() + begin);
 }

@@ -4,12 +4,14 @@
 
 #include "crumble/base/file.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
+#include "crumble/sim/change.hpp"
 
 namespace crumble {
 namespace {
 
 constexpr std::uint64_t kRecordingMagic = 0x31304345524d5243u;  // "CRMREC01"
-constexpr std::uint32_t kRecordingVersion = 4;                  // 4: suspensions
+constexpr std::uint32_t kRecordingVersion = 5;                  // 5: changes of the definition
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
   Hash hash;
@@ -31,7 +33,7 @@ Pose get_pose(ByteReader& in) {
 
 // Those of the changes that came before the step and after the one before it.
 template <class Change>
-std::span<const Change> before_step(const std::vector<Change>& changes, std::size_t step) {
+std::span<const Change> before_step(const Vector<Change>& changes, std::size_t step) {
   const auto first = std::lower_bound(changes.begin(), changes.end(), step,
                                       [](const Change& change, std::size_t at) { return change.step < at; });
   const auto last = std::find_if(first, changes.end(), [&](const Change& change) { return change.step != step; });
@@ -69,8 +71,26 @@ void Recording::add_suspension(std::uint32_t tool, bool suspended) {
   suspensions_.push_back({hashes_.size(), tool, suspended});
 }
 
+void Recording::add_change(Vector<std::uint8_t> settings) {
+  changes_.push_back({hashes_.size(), std::move(settings)});
+}
+
+Vector<std::uint8_t> Recording::settings_of(const SimulationDef& def) {
+  ByteWriter out;
+  write_settings(def, out);
+  return std::move(out.bytes());
+}
+
+void Recording::apply_change(const DefinitionAt& change, Simulation& sim) const {
+  ByteReader in(change.settings, "recording");
+  SimulationDef next = sim.definition();
+  read_settings(in, next);
+  DefinitionChange(sim.definition(), std::move(next)).apply_to(sim);
+}
+
 void Recording::apply_changes(std::size_t step, Simulation& sim) const {
   try {
+    for (const DefinitionAt& change : before_step(changes_, step)) apply_change(change, sim);
     for (const FragmentChange& change : before_step(fragment_changes_, step)) {
       sim.set_fragment_state(change.fragment, change.state);
     }
@@ -101,6 +121,10 @@ Simulation Recording::start(const StepSettings& how) const {
   return sim;
 }
 
+std::uint64_t Recording::first_step() const {
+  return start().info().step;
+}
+
 void Recording::save(const std::filesystem::path& path) const {
   ByteWriter out;
   out.put(kRecordingMagic), out.put(kRecordingVersion);
@@ -122,12 +146,14 @@ void Recording::save(const std::filesystem::path& path) const {
   for (const Suspension& suspension : suspensions_) {
     out.put(suspension.step), out.put(suspension.tool), out.put(std::uint8_t{suspension.suspended});
   }
+  out.put(static_cast<std::uint64_t>(changes_.size()));
+  for (const DefinitionAt& change : changes_) out.put(change.step), out.put(change.settings);
   out.put(checksum(out.bytes()));
   write_bytes(path, out.bytes());
 }
 
 Recording Recording::load(const std::filesystem::path& path) {
-  const std::vector<std::uint8_t> bytes = read_bytes(path);
+  const Vector<std::uint8_t> bytes = read_bytes(path);
   const std::string name = "recording '" + path.string() + "'";
   ByteReader in(bytes, name);
   if (in.get<std::uint64_t>() != kRecordingMagic) throw Error(Code::format, name + " is not a recording");
@@ -152,6 +178,7 @@ Recording Recording::load(const std::filesystem::path& path) {
   recording.load_fragment_changes(in, name);
   recording.load_force_changes(in, name);
   recording.load_suspensions(in, name);
+  recording.load_changes(in, name);
   return recording;
 }
 
@@ -191,6 +218,17 @@ void Recording::load_suspensions(ByteReader& in, const std::string& name) {
       throw Error(Code::corrupt, name + " holds an impossible suspension of a tool");
     }
     suspensions_.push_back({step, tool, suspended == 1});
+  }
+}
+
+void Recording::load_changes(ByteReader& in, const std::string& name) {
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    const auto step = in.get<std::uint64_t>();
+    const std::uint64_t before = changes_.empty() ? 0 : changes_.back().step;
+    if (step < before || step > hashes_.size()) {
+      throw Error(Code::corrupt, name + " holds an impossible change of the definition");
+    }
+    changes_.push_back({step, in.get_vector<std::uint8_t>()});
   }
 }
 

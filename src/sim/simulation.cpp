@@ -82,6 +82,8 @@ Simulation::Simulation(SimulationDef def)
       intact_(network_.spring_count(), 1),
       new_cuts_(network_.spring_count()),
       start_poses_(holder_count()),
+      advance_from_(holder_count()),
+      advance_to_(holder_count()),
       marks_(network_.node_count()),
       fragments_(network_.node_count(), network_.springs),
       fragment_states_(network_.node_count()),

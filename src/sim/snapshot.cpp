@@ -2,6 +2,7 @@
 #include <string>
 
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/simulation.hpp"
 
 namespace crumble {
@@ -50,7 +51,7 @@ std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::vector<std::uint8_t> Simulation::snapshot() const {
+Vector<std::uint8_t> Simulation::snapshot() const {
   ByteWriter out;
   out.put(kSnapshotMagic);
   out.put(layout_hash_);
@@ -87,7 +88,7 @@ std::vector<std::uint8_t> Simulation::snapshot() const {
 void Simulation::load_node_forces(ByteReader& in) {
   if (in.get<std::uint8_t>() == 0) return clear_node_forces();
   VecArray forces;
-  for (std::vector<double>* axis : {&forces.x, &forces.y, &forces.z}) {
+  for (Vector<double>* axis : {&forces.x, &forces.y, &forces.z}) {
     *axis = in.get_vector<double>();
     require(axis->size() == network_.node_count(), "number of node forces");
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble {
@@ -21,7 +22,7 @@ TetMesh make_lattice_box(const Vec3& size, double spacing) {
     cells[axis] = static_cast<std::uint32_t>(count);
   }
 
-  std::vector<Vec3> positions;
+  Vector<Vec3> positions;
   for (std::uint32_t z = 0; z <= cells[2]; ++z) {
     for (std::uint32_t y = 0; y <= cells[1]; ++y) {
       for (std::uint32_t x = 0; x <= cells[0]; ++x) {
@@ -37,7 +38,7 @@ TetMesh make_lattice_box(const Vec3& size, double spacing) {
   const auto node = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     return x + (cells[0] + 1) * (y + (cells[1] + 1) * z);
   };
-  std::vector<Tetrahedron> tetrahedra;
+  Vector<Tetrahedron> tetrahedra;
   for (std::uint32_t z = 0; z < cells[2]; ++z) {
     for (std::uint32_t y = 0; y < cells[1]; ++y) {
       for (std::uint32_t x = 0; x < cells[0]; ++x) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 
 namespace crumble {
@@ -62,7 +63,7 @@ void measure_tetrahedra(const TetMesh& mesh, MeshQuality& q) {
 }
 
 void measure_edges(const TetMesh& mesh, MeshQuality& q) {
-  std::vector<double> lengths;
+  Vector<double> lengths;
   for (const auto& [i, j] : mesh.springs) lengths.push_back(norm(mesh.positions[j] - mesh.positions[i]));
   const auto n = static_cast<double>(lengths.size());
   for (const double l : lengths) q.edge_mean += l / n;

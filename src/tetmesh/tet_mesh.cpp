@@ -6,6 +6,7 @@
 #include <string>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -17,7 +18,7 @@ std::string tet_name(std::size_t t) {
 /// Finds the node that stands at a place already, by open addressing; a node's slot is never asked for in order.
 class PlaceTable {
  public:
-  explicit PlaceTable(const std::vector<Vec3>& positions)
+  explicit PlaceTable(const Vector<Vec3>& positions)
       : positions_(positions), slots_(std::bit_ceil(2 * positions.size()), kFree) {}
 
   /// The node at the place of node i; i itself, which is put in, when there is none.
@@ -39,11 +40,11 @@ class PlaceTable {
     return h ^ h >> 32;
   }
 
-  const std::vector<Vec3>& positions_;
-  std::vector<std::uint32_t> slots_;
+  const Vector<Vec3>& positions_;
+  Vector<std::uint32_t> slots_;
 };
 
-void check_positions(const std::vector<Vec3>& positions) {
+void check_positions(const Vector<Vec3>& positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!is_finite(positions[i]))
       throw Error(Code::invalid_value, "position of node " + std::to_string(i) + " is not finite");
@@ -58,7 +59,7 @@ void check_positions(const std::vector<Vec3>& positions) {
 }
 
 void check_tetrahedra(const TetMesh& mesh) {
-  std::vector<std::uint8_t> used(mesh.node_count(), 0);
+  Vector<std::uint8_t> used(mesh.node_count(), 0);
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     for (const std::uint32_t node : mesh.tetrahedra[t]) {
       if (node >= mesh.node_count()) {
@@ -80,8 +81,8 @@ void check_tetrahedra(const TetMesh& mesh) {
 
 /// Numbers in buckets, one after the other: bucket b is values[starts[b] .. starts[b + 1]).
 struct Buckets {
-  std::vector<std::size_t> starts;
-  std::vector<std::uint32_t> values;
+  Vector<std::size_t> starts;
+  Vector<std::uint32_t> values;
   std::span<std::uint32_t> operator[](std::size_t b) {
     return std::span(values).subspan(starts[b], starts[b + 1] - starts[b]);
   }
@@ -106,7 +107,7 @@ void derive_springs(TetMesh& mesh) {
       for (const auto& [i, j] : kTetEdges) visit(std::min(t[i], t[j]), std::max(t[i], t[j]));
     }
   });
-  std::vector<std::uint32_t> first(mesh.node_count() + 1, 0);  // spring of each node
+  Vector<std::uint32_t> first(mesh.node_count() + 1, 0);  // spring of each node
   for (std::uint32_t node = 0; node < mesh.node_count(); ++node) {
     const auto all = ends[node];
     std::ranges::sort(all);
@@ -144,7 +145,7 @@ void derive_boundary(TetMesh& mesh) {
     std::uint32_t id;
     auto operator<=>(const Face&) const = default;
   };
-  std::vector<Face> faces;
+  Vector<Face> faces;
   for (std::uint32_t node = 0; node < mesh.node_count(); ++node) {
     faces.clear();
     for (const std::uint32_t id : by_least[node]) {
@@ -188,7 +189,7 @@ std::size_t TetMesh::surface_node_count() const {
   return node_count() - static_cast<std::size_t>(std::count(kinds.begin(), kinds.end(), NodeKind::inside));
 }
 
-TetMesh make_tet_mesh(std::vector<Vec3> positions, std::vector<Tetrahedron> tetrahedra, std::vector<NodeKind> kinds) {
+TetMesh make_tet_mesh(Vector<Vec3> positions, Vector<Tetrahedron> tetrahedra, Vector<NodeKind> kinds) {
   if (positions.empty()) throw Error(Code::empty, "mesh has no nodes");
   if (tetrahedra.empty()) throw Error(Code::empty, "mesh has no tetrahedra");
   if (positions.size() > 0x7fffffff || tetrahedra.size() > 0x3fffffff)

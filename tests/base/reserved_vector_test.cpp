@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "crumble/base/memory.hpp"
+
 #if defined(__linux__)
 #include <sys/mman.h>
 #include <unistd.h>
@@ -32,7 +34,7 @@ TEST(ReservedVector, HasItsPagesBeforeTheyAreUsed) {
   GTEST_SKIP() << "asks Linux which pages are there";
 #endif
   constexpr std::size_t kCount = 1 << 20;
-  std::vector<double> plain;
+  Vector<double> plain;
   plain.reserve(kCount);
   if (missing_pages(plain.data(), kCount * sizeof(double)) == 0) GTEST_SKIP() << "this malloc gives touched memory";
   ReservedVector<double> reserved;

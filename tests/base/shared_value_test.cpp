@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <thread>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -17,7 +18,7 @@ struct Many {
 TEST(SharedValue, ReadersSeeWholeValuesInOrder) {
   SharedValue<Many> shared;
   std::atomic<bool> stop{false};
-  std::vector<std::thread> readers;
+  Vector<std::thread> readers;
   std::atomic<std::uint64_t> torn{0}, backwards{0}, reads{0};
   for (int r = 0; r < 3; ++r) {
     readers.emplace_back([&] {

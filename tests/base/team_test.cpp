@@ -9,16 +9,16 @@
 #include <numeric>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
 
 // Tasks write plain numbers: a task done twice, or seen too late by the caller, is a race that ThreadSanitizer names.
 struct Counts {
-  std::vector<std::uint32_t> done;
+  Vector<std::uint32_t> done;
   static void add(void* data, std::uint32_t index) { ++static_cast<Counts*>(data)->done[index]; }
 };
 
@@ -30,10 +30,10 @@ bool gather(Team& team) {
     std::atomic<std::uint32_t> arrived{0};
   };
   Meeting meeting{team.threads()};
-  std::vector<std::uint8_t> met(team.threads());
+  Vector<std::uint8_t> met(team.threads());
   std::pair data{&meeting, &met};
   const auto meet = [](void* both, std::uint32_t index) {
-    auto& [m, all_met] = *static_cast<std::pair<Meeting*, std::vector<std::uint8_t>*>*>(both);
+    auto& [m, all_met] = *static_cast<std::pair<Meeting*, Vector<std::uint8_t>*>*>(both);
     m->arrived.fetch_add(1);
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (m->arrived.load() < m->awaited && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
@@ -48,8 +48,8 @@ TEST(Team, DoesEveryIndexOnceInEveryRun) {
     Team team(threads);
     EXPECT_EQ(team.threads(), threads);
     ASSERT_TRUE(gather(team));
-    Counts counts{std::vector<std::uint32_t>(100)};
-    std::vector<std::uint32_t> expected(100);
+    Counts counts{Vector<std::uint32_t>(100)};
+    Vector<std::uint32_t> expected(100);
     for (std::uint32_t run = 0; run < 3000; ++run) {
       const std::uint32_t count = run * 7 % 101;
       for (std::uint32_t i = 0; i < count; ++i) ++expected[i];
@@ -63,12 +63,12 @@ TEST(Team, DoesEveryIndexOnceInEveryRun) {
 
 TEST(Team, EachPhaseSeesWhatTheOneBeforeWrote) {
   struct Ring {
-    std::vector<std::uint64_t> from, to;
+    Vector<std::uint64_t> from, to;
   };
   constexpr std::uint32_t kParts = 13;
-  Ring ring{std::vector<std::uint64_t>(kParts), std::vector<std::uint64_t>(kParts)};
+  Ring ring{Vector<std::uint64_t>(kParts), Vector<std::uint64_t>(kParts)};
   std::iota(ring.from.begin(), ring.from.end(), 1);
-  std::vector<std::uint64_t> expected = ring.from;
+  Vector<std::uint64_t> expected = ring.from;
   Team team(4);
   ASSERT_TRUE(gather(team));
   for (int phase = 0; phase < 20000; ++phase) {
@@ -78,7 +78,7 @@ TEST(Team, EachPhaseSeesWhatTheOneBeforeWrote) {
     };
     team.run(kParts, mix, &ring);
     std::swap(ring.from, ring.to);
-    std::vector<std::uint64_t> next(kParts);
+    Vector<std::uint64_t> next(kParts);
     for (std::uint32_t i = 0; i < kParts; ++i) next[i] = 3 * expected[i] + expected[(i + 1) % kParts];
     expected = next;
     ASSERT_EQ(ring.from, expected) << phase;
@@ -99,10 +99,10 @@ TEST(Team, TwoCallersAtOnceEachGetAllTheirTasksDone) {
   Team team(3);
   ASSERT_TRUE(gather(team));
   const auto call = [&team](std::uint32_t count, bool& good) {
-    Counts counts{std::vector<std::uint32_t>(count)};
+    Counts counts{Vector<std::uint32_t>(count)};
     for (std::uint32_t run = 1; run <= 50000; ++run) {
       team.run(count, Counts::add, &counts);
-      good = good && counts.done == std::vector<std::uint32_t>(count, run);
+      good = good && counts.done == Vector<std::uint32_t>(count, run);
     }
   };
   bool first = true, second = true;
@@ -116,7 +116,7 @@ TEST(Team, TwoCallersAtOnceEachGetAllTheirTasksDone) {
 TEST(Team, TaskMayRunTasksOfItsOwn) {
   struct Nest {
     Team team{2};
-    std::vector<Counts> inner = std::vector<Counts>(6, Counts{std::vector<std::uint32_t>(50)});
+    Vector<Counts> inner = Vector<Counts>(6, Counts{Vector<std::uint32_t>(50)});
   };
   Nest nest;
   ASSERT_TRUE(gather(nest.team));
@@ -126,16 +126,16 @@ TEST(Team, TaskMayRunTasksOfItsOwn) {
       n.team.run(50, Counts::add, &n.inner[i]);
     };
     nest.team.run(6, outer, &nest);
-    for (const Counts& counts : nest.inner) ASSERT_EQ(counts.done, std::vector<std::uint32_t>(50, run));
+    for (const Counts& counts : nest.inner) ASSERT_EQ(counts.done, Vector<std::uint32_t>(50, run));
   }
 }
 
 TEST(Team, ComesAndGoesAtAnyMoment) {
   for (int round = 0; round < 200; ++round) {
     Team team(1 + round % 4);
-    Counts counts{std::vector<std::uint32_t>(9)};
+    Counts counts{Vector<std::uint32_t>(9)};
     for (int run = 0; run < round % 3; ++run) team.run(9, Counts::add, &counts);
-    EXPECT_EQ(counts.done, std::vector<std::uint32_t>(9, round % 3));
+    EXPECT_EQ(counts.done, Vector<std::uint32_t>(9, round % 3));
   }
 }
 
@@ -145,14 +145,14 @@ double processor_seconds() {
 
 TEST(Team, UsesNoProcessorWhenIdle) {
   Team team(8);
-  Counts counts{std::vector<std::uint32_t>(64)};
+  Counts counts{Vector<std::uint32_t>(64)};
   team.run(64, Counts::add, &counts);
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // all have gone to sleep
   const double before = processor_seconds();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_LT(processor_seconds() - before, 0.03) << "one spinning worker takes 0.3 s on an idle processor";
   team.run(64, Counts::add, &counts);
-  EXPECT_EQ(counts.done, std::vector<std::uint32_t>(64, 2));
+  EXPECT_EQ(counts.done, Vector<std::uint32_t>(64, 2));
 }
 
 TEST(Team, SingleTaskRunsOnTheCaller) {
@@ -170,7 +170,7 @@ TEST(Team, HostsThreadsDoTheWork) {
     int calls = 0;
     static void run(void* context, std::uint32_t count, void (*task)(void*, std::uint32_t), void* data) {
       ++static_cast<Host*>(context)->calls;
-      std::vector<std::thread> threads;
+      Vector<std::thread> threads;
       for (std::uint32_t i = 0; i < count; ++i) threads.emplace_back(task, data, i);
       for (std::thread& thread : threads) thread.join();
     }
@@ -178,9 +178,9 @@ TEST(Team, HostsThreadsDoTheWork) {
   Host host;
   Team team(ParallelFor{&Host::run, &host});
   EXPECT_GE(team.threads(), 1u);
-  Counts counts{std::vector<std::uint32_t>(5)};
+  Counts counts{Vector<std::uint32_t>(5)};
   for (int run = 0; run < 10; ++run) team.run(5, Counts::add, &counts);
-  EXPECT_EQ(counts.done, std::vector<std::uint32_t>(5, 10));
+  EXPECT_EQ(counts.done, Vector<std::uint32_t>(5, 10));
   EXPECT_EQ(host.calls, 10);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
@@ -14,7 +15,7 @@ Vec3 as_vector(const GridPoint& p) {
   return Vec3(p.x, p.y, p.z);
 }
 
-double volume_of(const std::vector<GridPoint>& points, const std::vector<Tetrahedron>& tetrahedra) {
+double volume_of(const Vector<GridPoint>& points, const Vector<Tetrahedron>& tetrahedra) {
   double sum = 0;
   for (const auto& [a, b, c, d] : tetrahedra) {
     const double volume =
@@ -25,7 +26,7 @@ double volume_of(const std::vector<GridPoint>& points, const std::vector<Tetrahe
   return sum;
 }
 
-void expect_empty_spheres(const std::vector<GridPoint>& points, const std::vector<Tetrahedron>& tetrahedra) {
+void expect_empty_spheres(const Vector<GridPoint>& points, const Vector<Tetrahedron>& tetrahedra) {
   std::size_t violations = 0;
   for (const auto& [a, b, c, d] : tetrahedra) {
     for (const GridPoint& e : points) violations += in_sphere(points[a], points[b], points[c], points[d], e);
@@ -35,10 +36,10 @@ void expect_empty_spheres(const std::vector<GridPoint>& points, const std::vecto
 
 TEST(Delaunay, RandomPointsHaveEmptySpheres) {
   Random random(5);
-  std::vector<Vec3> points;
+  Vector<Vec3> points;
   for (int i = 0; i < 400; ++i) points.push_back({random.uniform(), random.uniform(), random.uniform()});
-  const std::vector<GridPoint> grid = quantize(points);
-  const std::vector<Tetrahedron> tetrahedra = delaunay(grid);
+  const Vector<GridPoint> grid = quantize(points);
+  const Vector<Tetrahedron> tetrahedra = delaunay(grid);
   expect_empty_spheres(grid, tetrahedra);
   const double cube = std::pow(1 << (kCoordinateBits - 1), 3);
   EXPECT_NEAR(volume_of(grid, tetrahedra) / cube, 0.9, 0.1);  // of the points' hull; overlaps would exceed 1
@@ -48,18 +49,18 @@ TEST(Delaunay, RandomPointsHaveEmptySpheres) {
 // A cubic grid is the worst case of cospherical points: eight on each sphere, planes everywhere.
 TEST(Delaunay, CubicGridIsFilledExactly) {
   constexpr int kSide = 7, kStep = 250000;
-  std::vector<GridPoint> grid;
+  Vector<GridPoint> grid;
   for (int i = 0; i < kSide * kSide * kSide; ++i) {
     const auto place = [](int k) { return (1 << 20) + kStep * k; };
     grid.push_back({place(i % kSide), place(i / kSide % kSide), place(i / kSide / kSide)});
   }
-  const std::vector<Tetrahedron> tetrahedra = delaunay(grid);
+  const Vector<Tetrahedron> tetrahedra = delaunay(grid);
   expect_empty_spheres(grid, tetrahedra);
   EXPECT_NEAR(volume_of(grid, tetrahedra) / std::pow(double{kStep} * (kSide - 1), 3), 1, 1e-9);
 }
 
 TEST(Delaunay, QuantizedPointsFillTheMiddleHalf) {
-  const std::vector<GridPoint> grid = quantize(std::vector<Vec3>{{-2, 0, 0}, {6, 1, 1}, {0, 8, 0}});
+  const Vector<GridPoint> grid = quantize(Vector<Vec3>{{-2, 0, 0}, {6, 1, 1}, {0, 8, 0}});
   constexpr std::int32_t kQuarter = 1 << (kCoordinateBits - 2);
   EXPECT_EQ(grid[0].x, kQuarter);
   EXPECT_EQ(grid[1].x, 3 * kQuarter);
@@ -67,7 +68,7 @@ TEST(Delaunay, QuantizedPointsFillTheMiddleHalf) {
 }
 
 TEST(Delaunay, RefusesTheSamePointTwice) {
-  const std::vector<GridPoint> grid{{1 << 20, 1 << 20, 1 << 20}, {1 << 21, 1 << 20, 5}, {1 << 20, 1 << 20, 1 << 20}};
+  const Vector<GridPoint> grid{{1 << 20, 1 << 20, 1 << 20}, {1 << 21, 1 << 20, 5}, {1 << 20, 1 << 20, 1 << 20}};
   try {
     delaunay(grid);
     FAIL();

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "bubblemesh/measures.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/tetmesh/quality.hpp"
@@ -12,7 +13,7 @@
 namespace crumble {
 namespace {
 
-std::set<std::set<std::uint32_t>> as_sets(const std::vector<Tetrahedron>& tetrahedra) {
+std::set<std::set<std::uint32_t>> as_sets(const Vector<Tetrahedron>& tetrahedra) {
   std::set<std::set<std::uint32_t>> result;
   for (const Tetrahedron& t : tetrahedra) result.insert({t.begin(), t.end()});
   return result;
@@ -29,8 +30,8 @@ Cloud spindle(double half, std::uint32_t count, NodeKind kind) {
   }
   return cloud;
 }
-std::vector<Tetrahedron> around_edge(std::uint32_t count) {
-  std::vector<Tetrahedron> result;
+Vector<Tetrahedron> around_edge(std::uint32_t count) {
+  Vector<Tetrahedron> result;
   for (std::uint32_t k = 0; k < count; ++k) result.push_back({0, 1, 2 + k, 2 + (k + 1) % count});
   return result;
 }
@@ -67,7 +68,7 @@ TEST(TetComplex, RingGoesOnceAroundTheEdge) {
   for (std::size_t k = 0; k < 6; ++k) {
     EXPECT_EQ((ring.vertices[(k + 1) % 6] - 2), (ring.vertices[k] - 2 + 1) % 6);
   }
-  std::vector<Tetrahedron> part = around_edge(6);
+  Vector<Tetrahedron> part = around_edge(6);
   part.erase(part.begin() + 2);
   const Ring open = TetComplex(8, part).ring(0, 1);
   EXPECT_FALSE(open.closed);
@@ -105,7 +106,7 @@ TEST(Flips, LongEdgeMakesRoomForAFaceAndBack) {
 
 TEST(Flips, NothingIsMadeThatExistsAlready) {
   const Cloud tall = spindle(1.5, 4, NodeKind::inside);
-  std::vector<Tetrahedron> tetrahedra = around_edge(4);
+  Vector<Tetrahedron> tetrahedra = around_edge(4);
   const double any = -std::numeric_limits<double>::infinity();
   TetComplex alone(6, tetrahedra);
   ASSERT_TRUE(remove_edge(tall, least_sine, 0, 1, alone, any));

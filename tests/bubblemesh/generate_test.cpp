@@ -7,6 +7,7 @@
 
 #include "bubblemesh/lattice.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -69,7 +70,7 @@ TEST(Generate, CylinderKeepsItsRims) {
   const auto cylinder = make_cylinder(0.01, 0.02);
   const BubbleMesh result = mesh_of(*cylinder, 0.003);
   for (const double y : {0.0, 0.02}) {
-    std::vector<char> on_rim(result.mesh.node_count(), 0);
+    Vector<char> on_rim(result.mesh.node_count(), 0);
     for (std::size_t i = 0; i < on_rim.size(); ++i) {
       on_rim[i] = result.mesh.kinds[i] == NodeKind::crease && result.mesh.positions[i].y() == y;
     }

@@ -9,6 +9,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/bubblemesh/generate.hpp"
 
@@ -25,8 +26,8 @@ BubbleMesh lattice_of(const Shape& shape, double spacing, const Vec3& offset = V
 
 /// Where the perfect lattice has a node, in spacings, from its layer, row and place: written down a second time, from
 /// the words in docs/mesh.md.
-std::vector<Vec3> perfect_points(const BubbleMesh& body) {
-  std::vector<Vec3> points;
+Vector<Vec3> perfect_points(const BubbleMesh& body) {
+  Vector<Vec3> points;
   for (const LatticeRow& row : body.rows) {
     for (std::uint32_t k = 0; k < row.count; ++k) {
       const double shift = row.layer % 2 == 0 ? 0 : 0.5;
@@ -39,7 +40,7 @@ std::vector<Vec3> perfect_points(const BubbleMesh& body) {
 TEST(LatticeStructure, FlagsTellLatticeNeighbours) {
   for (const auto& shape : {make_box({9, 7.3, 8}), make_sphere(4), make_cylinder(3.5, 8)}) {
     const BubbleMesh body = lattice_of(*shape, 1, {0.2, 0.6, 0.4});
-    const std::vector<Vec3> points = perfect_points(body);
+    const Vector<Vec3> points = perfect_points(body);
     ASSERT_EQ(points.size(), body.mesh.node_count());
     ASSERT_EQ(body.lattice_neighbours.size(), body.mesh.springs.size());
     std::size_t others = 0;
@@ -61,8 +62,8 @@ TEST(LatticeStructure, FlagsTellLatticeNeighbours) {
 
 TEST(LatticeStructure, EveryInnerNodeHasAllItsNeighbours) {
   const BubbleMesh body = lattice_of(*make_box({12, 12, 12}), 1);
-  const std::vector<Vec3> points = perfect_points(body);
-  std::vector<int> nearest(points.size(), 0), upright(points.size(), 0), level_with_surface(points.size(), 0);
+  const Vector<Vec3> points = perfect_points(body);
+  Vector<int> nearest(points.size(), 0), upright(points.size(), 0), level_with_surface(points.size(), 0);
   for (const auto& [i, j] : body.mesh.springs) {
     const bool is_near = std::abs(squared_norm(points[j] - points[i]) - 1) < 1e-9;
     for (const std::uint32_t v : {i, j}) ++(is_near ? nearest : upright)[v];
@@ -82,8 +83,8 @@ TEST(LatticeStructure, EveryInnerNodeHasAllItsNeighbours) {
 
 TEST(LatticeStructure, NeighboursInARowHaveOneOffset) {
   const BubbleMesh body = lattice_of(*make_box({11, 9, 10}), 1);
-  const std::vector<Vec3> points = perfect_points(body);
-  std::vector<std::size_t> row_of(points.size());
+  const Vector<Vec3> points = perfect_points(body);
+  Vector<std::size_t> row_of(points.size());
   for (std::size_t r = 0; r < body.rows.size(); ++r) {
     for (std::uint32_t k = 0; k < body.rows[r].count; ++k) row_of[body.rows[r].first + k] = r;
   }
@@ -104,7 +105,7 @@ TEST(LatticeStructure, InnerNodesStandOnTheLattice) {
   // nothing is stretched in a sphere; powers of two make the steps exact
   const double spacing = 0.25;
   const BubbleMesh body = lattice_of(*make_sphere(2), spacing, {0.25, 0, 0.5});
-  const std::vector<Vec3> points = perfect_points(body);
+  const Vector<Vec3> points = perfect_points(body);
   std::size_t inner = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (body.mesh.kinds[i] != NodeKind::inside) continue;

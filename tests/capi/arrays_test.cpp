@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
@@ -9,7 +10,7 @@ namespace crumble {
 namespace {
 
 template <class T>
-std::vector<T> rows_of(const crumble_view& view) {
+Vector<T> rows_of(const crumble_view& view) {
   const auto* const first = static_cast<const T*>(view.data);
   EXPECT_EQ(view.stride, view.components * sizeof(T));
   return {first, first + view.count * view.components};
@@ -28,10 +29,10 @@ class Arrays : public CapiTest {
     return view;
   }
   template <class T>
-  std::vector<T> copy_of(std::uint32_t which) {
+  Vector<T> copy_of(std::uint32_t which) {
     std::uint64_t needed = 0;
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_copy(sim, which, nullptr, 0, &needed));
-    std::vector<T> values(needed / sizeof(T));
+    Vector<T> values(needed / sizeof(T));
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_copy(sim, which, values.data(), needed, nullptr));
     return values;
   }
@@ -100,7 +101,7 @@ TEST_F(Arrays, OfASimulation) {
 TEST_F(Arrays, BuffersAreFilledToTheByteOrNotAtAll) {
   const std::uint64_t exact = 24u * cube.node_count();
   std::uint64_t needed = 0;
-  std::vector<unsigned char> buffer(exact + 1, 0xab);
+  Vector<unsigned char> buffer(exact + 1, 0xab);
   expect_failure(CRUMBLE_E_BUFFER_TOO_SMALL,
                  crumble_sim_copy(sim, CRUMBLE_ARRAY_POSITIONS, buffer.data(), exact - 1, &needed),
                  {"dst_bytes", std::to_string(exact - 1), std::to_string(exact)});
@@ -113,7 +114,7 @@ TEST_F(Arrays, BuffersAreFilledToTheByteOrNotAtAll) {
   ASSERT_OK(crumble_sim_copy(sim, CRUMBLE_ARRAY_POSITIONS, buffer.data() + 1, exact, nullptr));
   EXPECT_EQ(std::memcmp(buffer.data() + 1, cube.positions.data(), exact), 0);
 
-  std::vector<unsigned char> springs(8 * cube.mesh.springs.size() + 1, 0xab);
+  Vector<unsigned char> springs(8 * cube.mesh.springs.size() + 1, 0xab);
   EXPECT_RESULT(CRUMBLE_E_BUFFER_TOO_SMALL, crumble_mesh_copy(mesh, CRUMBLE_ARRAY_SPRINGS, springs.data(), 8, &needed));
   EXPECT_EQ(needed, springs.size() - 1);
   EXPECT_EQ(springs[0], 0xab);
@@ -128,7 +129,7 @@ TEST_F(Arrays, FragmentsFollowTheCuts) {
   EXPECT_EQ(count, 1u);
   std::uint64_t size = 0;
   ASSERT_OK(crumble_sim_snapshot(sim, nullptr, 0, &size));
-  std::vector<std::uint8_t> whole(size);
+  Vector<std::uint8_t> whole(size);
   ASSERT_OK(crumble_sim_snapshot(sim, whole.data(), size, nullptr));
   press(1, 1000);  // far enough that pieces come off
   FragmentLabeler labeler(cube.node_count(), cube.mesh.springs);

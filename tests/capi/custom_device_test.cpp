@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "capi/loop_rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -127,7 +128,7 @@ TEST_F(CustomDevices, ACallIntoTheDeviceFromItsOwnCallbackIsBusy) {
 }
 
 TEST_F(CustomDevices, BadTablesAreRefused) {
-  const auto expect = [&](crumble_result expected, auto change, const std::vector<std::string>& words) {
+  const auto expect = [&](crumble_result expected, auto change, const Vector<std::string>& words) {
     crumble_device_callbacks table = strings.callbacks();
     crumble_device_def def{};
     ASSERT_OK(crumble_device_def_init(&def, sizeof def));

@@ -6,6 +6,7 @@
 
 #include "capi/loop_rig.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/open.hpp"
 
 namespace crumble {
@@ -56,7 +57,7 @@ class Devices : public testing::Test {
       other->write({0.1, 0.5, 0}, {0, 0, 0.01});
     }
   }
-  void expect_bad(crumble_result expected, const std::vector<std::string>& words) {
+  void expect_bad(crumble_result expected, const Vector<std::string>& words) {
     crumble_device made = nullptr;
     expect_failure(expected, crumble_device_open(&def, &made), words);
     EXPECT_EQ(made, nullptr);
@@ -232,10 +233,10 @@ TEST_F(Devices, ALogOfHapiBecomesATrajectory) {
 }
 
 TEST_F(Devices, KindsGoByName) {
-  std::vector<std::string> names;
+  Vector<std::string> names;
   while (const char* name = crumble_device_kind_name(static_cast<std::uint32_t>(names.size()))) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"null", "press", "replay", "phantom", "path", "hand", "poke", "tremor",
-                                             "wander", "inverse3", "custom"}));
+  EXPECT_EQ(names, (Vector<std::string>{"null", "press", "replay", "phantom", "path", "hand", "poke", "tremor",
+                                        "wander", "inverse3", "custom"}));
   EXPECT_EQ(crumble_device_kind_name(~0u), nullptr);
   std::uint32_t kind = 99;
   ASSERT_OK(crumble_device_kind("hand", &kind));
@@ -264,30 +265,30 @@ TEST_F(Devices, BadFieldsAreNamed) {
         &crumble_device_def::phantom_keep_enabled}) {
     def.*flag = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"phantom_", "2"});
   }
-  def.kind = CRUMBLE_DEVICE_PHANTOM, def.phantom_rate = 10, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"phantom.rate", "10"});
-  def.kind = CRUMBLE_DEVICE_POKE, def.poke_in = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke.in"});
-  def.kind = CRUMBLE_DEVICE_POKE, def.poke_count = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke.count"});
-  def.kind = CRUMBLE_DEVICE_TREMOR, def.tremor_high = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"tremor.high"});
-  def.kind = CRUMBLE_DEVICE_WANDER, def.wander_low[1] = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"wander.low"});
+  def.kind = CRUMBLE_DEVICE_PHANTOM, def.phantom_rate = 10, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"phantom_rate", "10"});
+  def.kind = CRUMBLE_DEVICE_POKE, def.poke_in = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke_in"});
+  def.kind = CRUMBLE_DEVICE_POKE, def.poke_count = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"poke_count"});
+  def.kind = CRUMBLE_DEVICE_TREMOR, def.tremor_high = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"tremor_high"});
+  def.kind = CRUMBLE_DEVICE_WANDER, def.wander_low[1] = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"wander_low"});
   def.reserved = 1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"reserved"});
   def.replay_loop = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_loop", "2"});
   def.tick = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"tick", "0"});
   def.tick = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"tick"});
   def.start.orientation[0] = 0, expect_bad(CRUMBLE_E_BAD_POSE, {"pose"});
   const auto press = [&] { def.kind = CRUMBLE_DEVICE_PRESS; };
-  press(), def.press_speed = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.speed"});
-  press(), def.press_depth = kInfinity, expect_bad(CRUMBLE_E_INVALID_VALUE, {"press.depth"});
-  press(), def.press_direction[1] = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.direction"});
-  press(), def.press_hold = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press.hold"});
+  press(), def.press_speed = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press_speed"});
+  press(), def.press_depth = kInfinity, expect_bad(CRUMBLE_E_INVALID_VALUE, {"press_depth"});
+  press(), def.press_direction[1] = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press_direction"});
+  press(), def.press_hold = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"press_hold"});
   def.kind = CRUMBLE_DEVICE_PATH, expect_bad(CRUMBLE_E_EMPTY, {"points"});
   def.kind = CRUMBLE_DEVICE_PATH, def.point_count = 1, expect_bad(CRUMBLE_E_NULL, {"points"});
   def.kind = CRUMBLE_DEVICE_PATH, def.points = backward, def.point_count = 2;
   expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"points[1].time"});
   const auto hand = [&] { def.kind = CRUMBLE_DEVICE_HAND, def.points = good, def.point_count = 1; };
-  hand(), def.hand_mass = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.mass"});
-  hand(), def.hand_device_mass = 0.2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.device_mass"});
-  hand(), def.hand_delay = 65, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand.delay"});
-  hand(), def.hand_max_force = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"hand.max_force"});
+  hand(), def.hand_mass = 0, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand_mass"});
+  hand(), def.hand_device_mass = 0.2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand_device_mass"});
+  hand(), def.hand_delay = 65, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hand_delay"});
+  hand(), def.hand_max_force = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"hand_max_force"});
 }
 
 TEST_F(Devices, BadTrajectoriesAreNamed) {
@@ -296,9 +297,9 @@ TEST_F(Devices, BadTrajectoriesAreNamed) {
   replay("/nowhere/there.ctraj"), expect_bad(CRUMBLE_E_IO, {"/nowhere/there.ctraj"});
   const std::string text = std::string(CRUMBLE_SOURCE_DIR) + "/README.md";
   replay(text.c_str()), expect_bad(CRUMBLE_E_FORMAT, {"README.md"});
-  replay(kTrajectory.c_str()), def.replay_from = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay.from"});
-  replay(kTrajectory.c_str()), def.replay_from = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"replay.from"});
-  replay(kTrajectory.c_str()), def.replay_to = 1e9, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay.to"});
+  replay(kTrajectory.c_str()), def.replay_from = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_from"});
+  replay(kTrajectory.c_str()), def.replay_from = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"replay_from"});
+  replay(kTrajectory.c_str()), def.replay_to = 1e9, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"replay_to"});
 }
 
 TEST_F(Devices, MisuseIsAnswered) {

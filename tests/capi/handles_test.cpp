@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
@@ -18,7 +19,7 @@ TEST(HandleTable, NeverGivesAHandleTwiceAndLeavesWornSlots) {
   static constinit HandleTable table(5, HandleLayout{1, 2, 6});  // 2 slots of 3 generations
   int object = 0;
   void* found = nullptr;
-  std::vector<void*> given;
+  Vector<void*> given;
   for (int i = 0; i < 6; ++i) {
     given.push_back(table.insert(&object));
     for (int j = 0; j < i; ++j) {
@@ -39,8 +40,8 @@ TEST(HandleTable, NeverGivesAHandleTwiceAndLeavesWornSlots) {
 
 TEST(HandleTable, WorksWithTheBitsOf32BitHosts) {
   static constinit HandleTable table(2, HandleLayout{12, 14, 6});
-  std::vector<int> objects(4096);
-  std::vector<void*> handles;
+  Vector<int> objects(4096);
+  Vector<void*> handles;
   for (int& object : objects) handles.push_back(table.insert(&object));
   for (std::size_t i = 0; i < objects.size(); ++i) {
     EXPECT_LE(reinterpret_cast<std::uintptr_t>(handles[i]), 0xffffffffu);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/local_model.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -12,10 +13,10 @@ namespace {
 
 class Host : public CapiTest {
  protected:
-  std::vector<crumble_contact> contacts() {
+  Vector<crumble_contact> contacts() {
     std::uint32_t count = 0;
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_get_contacts(sim, nullptr, 0, &count));
-    std::vector<crumble_contact> list(count);
+    Vector<crumble_contact> list(count);
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_get_contacts(sim, list.data(), count, &count));
     return list;
   }
@@ -62,7 +63,7 @@ TEST_F(Host, ContactsIntoTooSmallABufferTellTheCount) {
   press(1, 300);
   const auto there = static_cast<std::uint32_t>(contacts().size());
   ASSERT_GT(there, 2u);
-  std::vector<crumble_contact> list(there);
+  Vector<crumble_contact> list(there);
   list[0].node = 12345;
   std::uint32_t count = 0;
   expect_failure(CRUMBLE_E_BUFFER_TOO_SMALL, crumble_sim_get_contacts(sim, list.data(), there - 1, &count),
@@ -145,7 +146,7 @@ TEST_F(Host, LocalModelRefusals) {
 TEST_F(Host, ReadingTakesNoMemory) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "a sanitizer owns malloc";
   press(1, 300);
-  std::vector<crumble_contact> list(cube.node_count());
+  Vector<crumble_contact> list(cube.node_count());
   crumble_local_model value;
   std::uint32_t count = 0;
   const double force[3] = {0, 0.001, 0};
@@ -161,7 +162,7 @@ TEST_F(Host, ReadingTakesNoMemory) {
 TEST_F(Host, NodeForcesAreKeptRecordedAndTakenBack) {
   const std::uint64_t at_rest = hash();
   const auto path = std::filesystem::temp_directory_path() / "crumble_node_forces.crec";
-  std::vector<double> forces(3 * cube.node_count(), 0.0);
+  Vector<double> forces(3 * cube.node_count(), 0.0);
   for (std::size_t i = 0; i < forces.size(); i += 7) forces[i] = 1e-4 * static_cast<double>(i % 11);
   ASSERT_OK(crumble_sim_begin_recording(sim));
   press(1, 20);
@@ -187,7 +188,7 @@ TEST_F(Host, NodeForcesAreKeptRecordedAndTakenBack) {
 TEST_F(Host, NodeForcesRefusals) {
   press(1, 100);
   const std::uint64_t before = hash();
-  std::vector<double> forces(3 * cube.node_count(), 0.0);
+  Vector<double> forces(3 * cube.node_count(), 0.0);
   forces[3 * 17 + 1] = kNan;
   expect_failure(CRUMBLE_E_INVALID_VALUE, crumble_sim_set_node_forces(sim, forces.data(), cube.node_count()),
                  {"crumble_sim_set_node_forces", "node 17"});

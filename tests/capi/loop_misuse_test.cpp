@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "capi/loop_rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -13,7 +14,7 @@ class LoopMisuse : public LoopTest {
     hand_def.device = device = strings.open();
     good_loop = loop_def, good_hand = hand_def;
   }
-  void expect_bad(crumble_result expected, const std::vector<std::string>& words) {
+  void expect_bad(crumble_result expected, const Vector<std::string>& words) {
     crumble_loop made = nullptr;
     expect_failure(expected, crumble_loop_create(sim, &loop_def, &hand_def, 1, &made), words);
     EXPECT_EQ(made, nullptr);
@@ -47,19 +48,19 @@ TEST_F(LoopMisuse, BadHandFieldsAreNamed) {
   const struct {
     double crumble_hand_def::*field;
     const char* name;
-  } fields[] = {{&crumble_hand_def::workspace_scale, "workspace.scale"},
-                {&crumble_hand_def::force_gain, "workspace.force_gain"},
-                {&crumble_hand_def::coupling_stiffness, "coupling.stiffness"},
-                {&crumble_hand_def::delay, "passivity.delay"},
-                {&crumble_hand_def::max_damping, "passivity.max_damping"},
-                {&crumble_hand_def::energy_credit, "passivity.energy_credit"},
-                {&crumble_hand_def::max_force, "safety.max_force"},
-                {&crumble_hand_def::max_torque, "safety.max_torque"},
-                {&crumble_hand_def::max_speed, "safety.max_speed"},
-                {&crumble_hand_def::max_jump, "safety.max_jump"},
-                {&crumble_hand_def::max_slew, "safety.max_slew"},
-                {&crumble_hand_def::ramp_time, "safety.ramp_time"},
-                {&crumble_hand_def::workspace_margin, "safety.workspace_margin"}};
+  } fields[] = {{&crumble_hand_def::workspace_scale, "workspace_scale"},
+                {&crumble_hand_def::force_gain, "force_gain"},
+                {&crumble_hand_def::coupling_stiffness, "coupling_stiffness"},
+                {&crumble_hand_def::delay, "delay"},
+                {&crumble_hand_def::max_damping, "max_damping"},
+                {&crumble_hand_def::energy_credit, "energy_credit"},
+                {&crumble_hand_def::max_force, "max_force"},
+                {&crumble_hand_def::max_torque, "max_torque"},
+                {&crumble_hand_def::max_speed, "max_speed"},
+                {&crumble_hand_def::max_jump, "max_jump"},
+                {&crumble_hand_def::max_slew, "max_slew"},
+                {&crumble_hand_def::ramp_time, "ramp_time"},
+                {&crumble_hand_def::workspace_margin, "workspace_margin"}};
   for (const auto& [field, name] : fields) {
     hand_def.*field = kNan, expect_bad(CRUMBLE_E_INVALID_VALUE, {"hands[0]", name});
     hand_def.*field = -1, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hands[0]", name, "-1"});
@@ -69,8 +70,8 @@ TEST_F(LoopMisuse, BadHandFieldsAreNamed) {
   hand_def.inject_damping = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hands[0].inject_damping"});
   hand_def.controller = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hands[0].controller"});
   hand_def.reserved = 2, expect_bad(CRUMBLE_E_OUT_OF_RANGE, {"hands[0].reserved"});
-  hand_def.workspace.position[0] = kNan, expect_bad(CRUMBLE_E_BAD_POSE, {"hands[0]", "workspace.pose"});
-  hand_def.workspace_mount[0] = 0, expect_bad(CRUMBLE_E_BAD_POSE, {"hands[0]", "workspace.mount"});
+  hand_def.workspace.position[0] = kNan, expect_bad(CRUMBLE_E_BAD_POSE, {"hands[0]", "workspace must"});
+  hand_def.workspace_mount[0] = 0, expect_bad(CRUMBLE_E_BAD_POSE, {"hands[0]", "workspace_mount"});
 }
 
 TEST_F(LoopMisuse, BadDevicesAreNamed) {
@@ -83,7 +84,7 @@ TEST_F(LoopMisuse, BadDevicesAreNamed) {
 }
 
 TEST_F(LoopMisuse, HandsMustBeSomeFewAndDistinct) {
-  std::vector<crumble_hand_def> hands(5, hand_def);
+  Vector<crumble_hand_def> hands(5, hand_def);
   crumble_loop made = nullptr;
   EXPECT_RESULT(CRUMBLE_E_EMPTY, crumble_loop_create(sim, &loop_def, nullptr, 0, &made));
   EXPECT_RESULT(CRUMBLE_E_NULL, crumble_loop_create(sim, &loop_def, nullptr, 1, &made));
@@ -104,8 +105,7 @@ TEST_F(LoopMisuse, WhatALoopNeedsCannotGoOrChange) {
   expect_failure(CRUMBLE_E_IN_USE, crumble_device_destroy(device), {"crumble_device_destroy", "1 loops"});
   expect_failure(CRUMBLE_E_IN_USE, crumble_sim_destroy(sim), {"crumble_sim_destroy", "loop"});
   expect_failure(CRUMBLE_E_IN_USE, crumble_sim_add_tool(sim, &tool, nullptr), {"crumble_sim_add_tool", "loop"});
-  EXPECT_RESULT(CRUMBLE_E_IN_USE, crumble_sim_configure(sim, &def));
-  EXPECT_RESULT(CRUMBLE_E_IN_USE, crumble_sim_apply_paper_preset(sim));
+  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_apply_paper_preset(sim)) << "another tau";
   const crumble_pose pose = pose_at(0);
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_step(sim, &pose, &wrench)) << "but it may be stepped, and reset";
   EXPECT_RESULT(CRUMBLE_OK, crumble_sim_reset(sim));
@@ -155,7 +155,7 @@ TEST_F(LoopMisuse, TextsComeIntoBuffers) {
   ASSERT_EQ(status().warning_count, 1u);
   std::uint64_t needed = 0;
   ASSERT_OK(crumble_loop_get_warning(loop, 0, nullptr, 0, &needed));
-  std::vector<char> text(needed, '?');
+  Vector<char> text(needed, '?');
   EXPECT_RESULT(CRUMBLE_E_BUFFER_TOO_SMALL, crumble_loop_get_warning(loop, 0, text.data(), needed - 1, nullptr));
   EXPECT_EQ(text[0], '?');
   ASSERT_OK(crumble_loop_get_warning(loop, 0, text.data(), needed, nullptr));
@@ -192,7 +192,7 @@ TEST_F(LoopMisuse, OlderAndNewerPrograms) {
   ASSERT_OK(crumble_sim_add_tool(sim, &tool, nullptr));
   const crumble_device second = other.open();
   const auto expect_two = [&](std::uint32_t size) {
-    std::vector<char> bytes(2 * size, '\xff');
+    Vector<char> bytes(2 * size, '\xff');
     const auto at = [&](int i) { return reinterpret_cast<crumble_hand_def*>(bytes.data() + i * size); };
     for (int i = 0; i < 2; ++i) {
       ASSERT_OK(crumble_hand_def_init(at(i), size));

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "capi/loop_rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace crumble {
@@ -91,7 +92,7 @@ TEST_F(RunningLoops, AnswerManyThreadsAtOnce) {
   make_loop(strings.open());
   ASSERT_OK(crumble_loop_start(loop));
   std::atomic<bool> stop = false;
-  std::vector<std::thread> threads;
+  Vector<std::thread> threads;
   for (int t = 0; t < 3; ++t) {
     threads.emplace_back([&, t] {
       std::uint64_t before = 0;

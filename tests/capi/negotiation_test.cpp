@@ -82,7 +82,8 @@ TEST_F(Negotiation, ANewerProgramIsServedWhileItsNewFieldsAreZero) {
 
   newer.more[2] = 1e-300;
   made = nullptr;
-  expect_failure(CRUMBLE_E_VERSION, crumble_sim_create(mesh, &newer.def, &made), {"crumble_sim_create", "200 bytes"});
+  expect_failure(CRUMBLE_E_VERSION, crumble_sim_create(mesh, &newer.def, &made),
+                 {"crumble_sim_create", std::to_string(sizeof newer) + " bytes"});
   EXPECT_EQ(made, nullptr);
 }
 

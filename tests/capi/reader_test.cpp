@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
@@ -14,7 +15,7 @@ namespace crumble {
 namespace {
 
 template <class T>
-std::vector<T> rows_of(const crumble_view& view) {
+Vector<T> rows_of(const crumble_view& view) {
   const T* first = static_cast<const T*>(view.data);
   return {first, first + view.count * view.components};
 }
@@ -42,7 +43,7 @@ class Readers : public CapiTest {
     return out;
   }
   template <class T>
-  std::vector<T> array(std::uint32_t which, crumble_reader of = nullptr) {
+  Vector<T> array(std::uint32_t which, crumble_reader of = nullptr) {
     return rows_of<T>(view(which, of));
   }
   crumble_fragment_info fragment(std::uint32_t id) {
@@ -51,7 +52,7 @@ class Readers : public CapiTest {
     EXPECT_RESULT(CRUMBLE_OK, crumble_reader_get_fragment(reader, id, &info));
     return info;
   }
-  std::vector<std::uint32_t> list(std::uint32_t id, std::uint32_t which) {
+  Vector<std::uint32_t> list(std::uint32_t id, std::uint32_t which) {
     crumble_view out{};
     EXPECT_RESULT(CRUMBLE_OK, crumble_reader_get_fragment_list(reader, id, which, &out));
     return rows_of<std::uint32_t>(out);
@@ -88,7 +89,7 @@ TEST_F(Readers, SeeTheStateThatWasPublished) {
     ASSERT_OK(crumble_sim_get_view(sim, which, &direct));
     EXPECT_EQ(array<double>(which), rows_of<double>(direct));
   }
-  std::vector<double> rows(3 * cube.node_count()), direct(rows);
+  Vector<double> rows(3 * cube.node_count()), direct(rows);
   const std::uint64_t bytes = rows.size() * sizeof(double);
   ASSERT_OK(crumble_reader_copy(reader, CRUMBLE_ARRAY_POSITIONS, rows.data(), bytes, nullptr));
   ASSERT_OK(crumble_sim_copy(sim, CRUMBLE_ARRAY_POSITIONS, direct.data(), bytes, nullptr));
@@ -135,8 +136,8 @@ TEST_F(Readers, TheirSurfaceIsClosedInEveryMode) {
 // A renderer that uploads only what is said to have changed has the same arrays in the end.
 TEST_F(Readers, ChangesAreAllThatChanges) {
   update();
-  std::vector<std::uint32_t> triangles = array<std::uint32_t>(CRUMBLE_ARRAY_SURFACE_TRIANGLES);
-  std::vector<double> rest = array<double>(CRUMBLE_ARRAY_SURFACE_REST_POSITIONS);
+  Vector<std::uint32_t> triangles = array<std::uint32_t>(CRUMBLE_ARRAY_SURFACE_TRIANGLES);
+  Vector<double> rest = array<double>(CRUMBLE_ARRAY_SURFACE_REST_POSITIONS);
   std::size_t changed = 0;
   for (int step = 0; step < 600; step += 20) {
     press(step + 1, step + 20);
@@ -196,7 +197,7 @@ TEST_F(Readers, FragmentsAreMeasuredAndListed) {
 
 TEST_F(Readers, EventsTellTheFamilyTreeAndEveryCut) {
   press(1, 1000);
-  std::vector<crumble_event> events(100);
+  Vector<crumble_event> events(100);
   std::uint32_t count = 1, cuts = 0, splits = 0;
   std::uint64_t last = 0;
   while (count > 0) {
@@ -254,7 +255,7 @@ TEST_F(Readers, DebrisSleepsAndGoes) {
 
 TEST_F(Readers, TextureCoordinatesFollowTheSkin) {
   break_up();
-  std::vector<float> boundary;
+  Vector<float> boundary;
   for (const Triangle& t : cube.mesh.boundary) {
     for (const std::uint32_t n : t) {
       boundary.push_back(static_cast<float>(cube.mesh.positions[n].x()));
@@ -262,7 +263,7 @@ TEST_F(Readers, TextureCoordinatesFollowTheSkin) {
     }
   }
   const crumble_reader_info info = update();
-  std::vector<float> skin(6 * std::size_t{info.skin_triangle_count});
+  Vector<float> skin(6 * std::size_t{info.skin_triangle_count});
   expect_failure(CRUMBLE_E_BUFFER_TOO_SMALL,
                  crumble_reader_spread_over_skin(reader, boundary.data(), skin.data(), info.skin_triangle_count - 1),
                  {"skin_count", std::to_string(info.skin_triangle_count)});
@@ -300,7 +301,7 @@ TEST_F(Readers, AnswerMisuse) {
   expect_failure(CRUMBLE_E_OUT_OF_RANGE, crumble_sim_set_fragment_state(sim, 0, 3), {"state", "3"});
   expect_failure(CRUMBLE_E_OUT_OF_RANGE, crumble_sim_set_fragment_state(sim, 7, 1), {"fragment", "7"});
   EXPECT_RESULT(CRUMBLE_E_INVALID_VALUE, crumble_sim_find_debris(sim, 1, kNan, &out));
-  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_fix_below(sim, 0), {"1 readers"});
+  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_add_tool(sim, &tool, nullptr), {"1 readers"});
   ASSERT_OK(crumble_reader_create(sim, nullptr, &made));
   ASSERT_OK(crumble_reader_destroy(made));
   EXPECT_RESULT(CRUMBLE_E_STALE_HANDLE, crumble_reader_update(made, nullptr));
@@ -309,8 +310,8 @@ TEST_F(Readers, AnswerMisuse) {
 
 TEST_F(Readers, TakeNoMemoryOnceTheyAreMade) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
-  const std::vector<float> boundary(6 * cube.mesh.boundary.size());
-  std::vector<float> skin(100 * boundary.size());
+  const Vector<float> boundary(6 * cube.mesh.boundary.size());
+  Vector<float> skin(100 * boundary.size());
   const auto room = static_cast<std::uint32_t>(skin.size() / 6);
   crumble_event events[64];
   crumble_view out{};
@@ -377,8 +378,8 @@ TEST_F(Readers, WriteNothingWhenTheyFail) {
   EXPECT_EQ(number, 77u);
   EXPECT_EQ(event.kind, 0u);
   std::uint64_t needed = 0;
-  std::vector<std::uint8_t> bytes(cube.mesh.springs.size() - 1, 0x55);
-  const std::vector<std::uint8_t> untouched = bytes;
+  Vector<std::uint8_t> bytes(cube.mesh.springs.size() - 1, 0x55);
+  const Vector<std::uint8_t> untouched = bytes;
   EXPECT_RESULT(CRUMBLE_E_BUFFER_TOO_SMALL,
                 crumble_reader_copy(reader, CRUMBLE_ARRAY_INTACT, bytes.data(), bytes.size(), &needed));
   EXPECT_EQ(needed, cube.mesh.springs.size());
@@ -390,7 +391,8 @@ TEST_F(Readers, WriteNothingWhenTheyFail) {
   crumble_reader_def settings{};
   EXPECT_RESULT(CRUMBLE_E_UNINITIALIZED, crumble_reader_create(sim, &settings, &made));
   EXPECT_EQ(made, reader);
-  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_fix_below(sim, 0), {"1 readers"});  // nor did that leave one behind
+  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_add_tool(sim, &tool, nullptr),
+                 {"1 readers"});  // nor did that leave one behind
 }
 
 TEST_F(Readers, OutliveTheirSimulation) {
@@ -446,7 +448,7 @@ TEST_F(Readers, MayBeDestroyedWhileOthersAreMade) {
   done = true;
   drawing.join();
   EXPECT_RESULT(CRUMBLE_OK, crumble_reader_destroy(handed_over));
-  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_fix_below(sim, 0), {"1 readers"});  // the fixture's
+  expect_failure(CRUMBLE_E_IN_USE, crumble_sim_add_tool(sim, &tool, nullptr), {"1 readers"});  // the fixture's
 }
 
 // A body of three slices, so that a reset finds a copy half made; under TSan this is the test of the thread rules.
@@ -498,7 +500,7 @@ TEST_F(ReadersOfALargeBody, WorkBesideResetRestoreRemovalAndDestruction) {
       ASSERT_OK(crumble_sim_step(other, &pose, &wrench));
     }
   };
-  std::vector<std::uint8_t> broken;
+  Vector<std::uint8_t> broken;
   for (int round = 0; round < 3; ++round) {
     press_other(1, 700);
     crumble_reader brief = nullptr;

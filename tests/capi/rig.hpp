@@ -5,8 +5,8 @@
 
 #include <limits>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/crumble.h"
 #include "crumble/sim/simulation.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -24,7 +24,7 @@ inline std::string name_of(crumble_result result) {
 #define ASSERT_OK(call) ASSERT_EQ(name_of(CRUMBLE_OK), name_of(call)) << crumble_last_error()
 
 /// The call fails so, and the text names the function and every one of `words`.
-inline void expect_failure(crumble_result expected, crumble_result got, const std::vector<std::string>& words) {
+inline void expect_failure(crumble_result expected, crumble_result got, const Vector<std::string>& words) {
   EXPECT_EQ(name_of(expected), name_of(got));
   const std::string text = crumble_last_error();
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << text << "\nlacks " << word;
@@ -44,8 +44,8 @@ struct Cube {
   }
 
   TetMesh mesh;
-  std::vector<double> positions;
-  std::vector<std::uint32_t> tetrahedra;
+  Vector<double> positions;
+  Vector<std::uint32_t> tetrahedra;
 };
 
 /// A cube that stands fixed under a stick; its springs break early.

@@ -4,12 +4,13 @@
 #include <thread>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
 
-std::vector<std::string> kernels() {
-  std::vector<std::string> names;
+Vector<std::string> kernels() {
+  Vector<std::string> names;
   for (std::uint32_t i = 0; const char* const name = crumble_kernel_name(i); ++i) names.emplace_back(name);
   return names;
 }
@@ -68,7 +69,7 @@ class LargeSolver : public Solver {
 };
 
 TEST_F(Solver, KernelsHaveNamesAndFindThemselves) {
-  const std::vector<std::string> names = kernels();
+  const Vector<std::string> names = kernels();
   ASSERT_FALSE(names.empty());
   EXPECT_EQ(names, kernel_names());
   EXPECT_EQ(names[0], "scalar");
@@ -144,7 +145,7 @@ TEST_F(Solver, SnapshotsAndRecordingsFitEveryKernelAndNumberOfThreadsButOnePreci
   press_with(250);
   std::uint64_t size = 0;
   ASSERT_OK(crumble_sim_snapshot(sim, nullptr, 0, &size));
-  std::vector<std::uint8_t> saved(size);
+  Vector<std::uint8_t> saved(size);
   ASSERT_OK(crumble_sim_snapshot(sim, saved.data(), size, nullptr));
   press(251, 300);
   const std::uint64_t live = hash();

@@ -3,6 +3,7 @@
 
 #include "capi/rig.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -19,10 +20,10 @@ class State : public CapiTest {
     std::filesystem::remove(path);
     CapiTest::TearDown();
   }
-  std::vector<std::uint8_t> snapshot() {
+  Vector<std::uint8_t> snapshot() {
     std::uint64_t needed = 0;
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_snapshot(sim, nullptr, 0, &needed));
-    std::vector<std::uint8_t> bytes(needed);
+    Vector<std::uint8_t> bytes(needed);
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_snapshot(sim, bytes.data(), needed, nullptr));
     return bytes;
   }
@@ -46,7 +47,7 @@ TEST_F(State, ARestoredSimulationGoesOnWithTheSameBits) {
   press(1, 250);
   ASSERT_GT(counters().cuts, 0u);
   ASSERT_GT(info().contacts, 0u);
-  const std::vector<std::uint8_t> saved = snapshot();
+  const Vector<std::uint8_t> saved = snapshot();
   press(251, 400);
   const std::uint64_t live = hash();
   const crumble_wrench live_wrench = wrench;
@@ -69,23 +70,23 @@ TEST_F(State, ARestoredSimulationGoesOnWithTheSameBits) {
 
 TEST_F(State, DamagedSnapshotsChangeNothing) {
   press(1, 250);
-  const std::vector<std::uint8_t> saved = snapshot();
+  const Vector<std::uint8_t> saved = snapshot();
   press(251, 260);
   const std::uint64_t before = hash();
   for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{40}, saved.size() - 1}) {
     EXPECT_RESULT(CRUMBLE_E_CORRUPT, crumble_sim_restore(sim, saved.data(), size));
   }
   for (std::size_t byte = 16; byte < saved.size(); byte += 997) {
-    std::vector<std::uint8_t> bad = saved;
+    Vector<std::uint8_t> bad = saved;
     bad[byte] ^= 4;
     EXPECT_RESULT(CRUMBLE_E_CORRUPT, crumble_sim_restore(sim, bad.data(), bad.size()));
   }
   EXPECT_EQ(hash(), before);
   std::uint64_t needed = 0;
-  std::vector<std::uint8_t> small(100, 0xab);
+  Vector<std::uint8_t> small(100, 0xab);
   EXPECT_RESULT(CRUMBLE_E_BUFFER_TOO_SMALL, crumble_sim_snapshot(sim, small.data(), small.size(), &needed));
   EXPECT_EQ(needed, snapshot().size());
-  EXPECT_EQ(small, std::vector<std::uint8_t>(100, 0xab));
+  EXPECT_EQ(small, Vector<std::uint8_t>(100, 0xab));
 
   ASSERT_OK(crumble_sim_reset(sim));
   def.mass = 0.031;
@@ -134,16 +135,16 @@ TEST_F(State, ARecordingKnowsItsStates) {
 
   ASSERT_OK(crumble_sim_reset(sim));
   ASSERT_OK(crumble_sim_begin_recording(sim));
-  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_configure(sim, &def)) << "a recording begins with its definition";
+  EXPECT_RESULT(CRUMBLE_E_STATE, crumble_sim_add_tool(sim, &tool, nullptr)) << "a recording begins with its tools";
   EXPECT_RESULT(CRUMBLE_E_IO, crumble_sim_save_recording(sim, "/no/such/folder/x.rec"));
 }
 
 TEST_F(State, DamagedRecordingsAreToldApart) {
   record(1, 30);
-  const std::vector<std::uint8_t> good = read_bytes(path);
+  const Vector<std::uint8_t> good = read_bytes(path);
   std::filesystem::remove(path);
   expect_verdict(CRUMBLE_E_IO);
-  const auto expect_bytes = [&](crumble_result expected, std::vector<std::uint8_t> bytes) {
+  const auto expect_bytes = [&](crumble_result expected, Vector<std::uint8_t> bytes) {
     write_bytes(path, bytes);
     expect_verdict(expected);
   };
@@ -152,11 +153,11 @@ TEST_F(State, DamagedRecordingsAreToldApart) {
     expect_bytes(CRUMBLE_E_CORRUPT, {good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)});
   }
   for (std::size_t byte = 12; byte < good.size(); byte += good.size() / 23) {
-    std::vector<std::uint8_t> bad = good;
+    Vector<std::uint8_t> bad = good;
     bad[byte] ^= 1;
     expect_bytes(CRUMBLE_E_CORRUPT, bad);
   }
-  std::vector<std::uint8_t> bad = good;
+  Vector<std::uint8_t> bad = good;
   bad[0] ^= 1;
   expect_bytes(CRUMBLE_E_FORMAT, bad);
   bad = good;

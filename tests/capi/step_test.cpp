@@ -3,6 +3,7 @@
 
 #include "capi/c_client.h"
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/bubblemesh/presets.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -151,7 +152,7 @@ TEST_F(Step, EachToolHasItsOwnWrench) {
 TEST_F(Step, RefusesBadPosesWithoutForce) {
   press(1, 100);
   ASSERT_GT(wrench.force[1], 0);
-  std::vector<double> before(3 * cube.node_count()), after = before;
+  Vector<double> before(3 * cube.node_count()), after = before;
   ASSERT_OK(crumble_sim_copy(sim, CRUMBLE_ARRAY_POSITIONS, before.data(), before.size() * 8, nullptr));
   for (int i = 0; i < 3; ++i) {
     crumble_pose bad = pose_at(101);

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -47,7 +48,7 @@ TEST_F(CapiTest, ErrorTextsBelongToTheirThread) {
 
 TEST(Threads, ManyMakeAndDestroyAtOnce) {
   const Cube cube(1);
-  std::vector<std::thread> threads;
+  Vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&] {
       for (int i = 0; i < 200; ++i) {

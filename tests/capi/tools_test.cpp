@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "capi/rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
 #include "crumble/geometry/support_solid.hpp"
 #include "crumble/geometry/tool_solids.hpp"
@@ -76,12 +77,12 @@ TEST_F(ToolKinds, StandWhereTheirOffsetPutsThem) {
 
 // A block with a groove along its lower side; its inner edge would be cut off if it were taken for convex.
 TEST_F(ToolKinds, MeshesMayBeConcaveAndInsideOut) {
-  std::vector<double> vertices;
+  Vector<double> vertices;
   const double outline[6][2] = {{-8, 5}, {-8, -5}, {0, 0}, {8, -5}, {8, 5}, {0, 6}};  // mm, counter-clockwise
   for (const auto& [x, y] : outline) {
     for (const double z : {-20.0, 20.0}) vertices.insert(vertices.end(), {1e-3 * x, 1e-3 * y, 1e-3 * z});
   }
-  std::vector<std::uint32_t> triangles;
+  Vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < 6; ++i) {
     const std::uint32_t back = 2 * i, next = 2 * ((i + 1) % 6);
     triangles.insert(triangles.end(), {back, next, next + 1, back, next + 1, back + 1});
@@ -145,15 +146,15 @@ TEST_F(ToolKinds, TwoHaveTheirOwnPosesAndWrenches) {
 class Regions : public CapiTest {
  protected:
   // Nodes that a body without support no longer loses when it falls: those that stand still are the fixed ones.
-  std::vector<std::uint32_t> fixed_nodes(crumble_sim made) {
+  Vector<std::uint32_t> fixed_nodes(crumble_sim made) {
     crumble_wrench out;
     for (int step = 0; step < 5; ++step) {
       const crumble_pose away = {{0, 1, 0}, {1, 0, 0, 0}};
       EXPECT_RESULT(CRUMBLE_OK, crumble_sim_step(made, &away, &out));
     }
-    std::vector<double> now(3 * cube.node_count());
+    Vector<double> now(3 * cube.node_count());
     EXPECT_RESULT(CRUMBLE_OK, crumble_sim_copy(made, CRUMBLE_ARRAY_POSITIONS, now.data(), 8 * now.size(), nullptr));
-    std::vector<std::uint32_t> still;
+    Vector<std::uint32_t> still;
     for (std::uint32_t i = 0; i < cube.node_count(); ++i) {
       if (now[3 * i] == cube.positions[3 * i] && now[3 * i + 1] == cube.positions[3 * i + 1]) still.push_back(i);
     }
@@ -169,7 +170,7 @@ TEST_F(Regions, AreAddedToWhatIsFixed) {
   const double low[3] = {-1, 0.024, -1}, high[3] = {-0.0149, 1, 1}, right[3] = {-1, 0, 0};
   ASSERT_OK(crumble_sim_fix_box(sim, low, high));
   ASSERT_OK(crumble_sim_fix_plane(sim, right, -0.0149));
-  std::vector<std::uint32_t> expected;
+  Vector<std::uint32_t> expected;
   for (std::uint32_t i = 0; i < cube.node_count(); ++i) {
     const double x = cube.positions[3 * i], y = cube.positions[3 * i + 1];
     if ((x < -0.0149 && y > 0.024) || x > 0.0149) expected.push_back(i);
@@ -180,7 +181,7 @@ TEST_F(Regions, AreAddedToWhatIsFixed) {
 
 // The cube's top is taken 1 mm up and to the side, and turned.
 TEST_F(Regions, AttachmentsGoWhereTheyAreTaken) {
-  std::vector<std::uint32_t> top;
+  Vector<std::uint32_t> top;
   for (std::uint32_t i = 0; i < cube.node_count(); ++i) {
     if (cube.positions[3 * i + 1] > 0.0299) top.push_back(i);
   }
@@ -195,7 +196,7 @@ TEST_F(Regions, AttachmentsGoWhereTheyAreTaken) {
         {{2e-6 * step, 0.03 + 2e-6 * step, 0}, {std::cos(angle / 2), 0, std::sin(angle / 2), 0}}};
     ASSERT_OK(crumble_sim_step_tools(sim, poses, wrenches, 2));
   }
-  std::vector<double> now(3 * cube.node_count());
+  Vector<double> now(3 * cube.node_count());
   ASSERT_OK(crumble_sim_copy(sim, CRUMBLE_ARRAY_POSITIONS, now.data(), 8 * now.size(), nullptr));
   for (const std::uint32_t i : top) {
     const Vec3 rest(cube.positions[3 * i], 0, cube.positions[3 * i + 2]);

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 
 namespace crumble::cli {
@@ -14,7 +15,7 @@ namespace {
 using nlohmann::json;
 using render::TemporaryFolder;
 
-json rows_of(std::vector<std::string> arguments) {
+json rows_of(Vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "bench");
   arguments.push_back("--json");
   const Outcome outcome = crumble(arguments);
@@ -22,9 +23,9 @@ json rows_of(std::vector<std::string> arguments) {
   return json::parse(outcome.out).at("rows");
 }
 
-std::vector<std::string> kernels() {
+Vector<std::string> kernels() {
   std::istringstream lines(crumble({"bench", "--list-kernels"}).out);
-  std::vector<std::string> names;
+  Vector<std::string> names;
   for (std::string name; std::getline(lines, name);) names.push_back(name);
   return names;
 }
@@ -85,7 +86,7 @@ void expect_one_hash(const json& rows) {
 TEST(Bench, EveryKernelGivesTheSameBits) {
   ASSERT_GE(kernels().size(), 2u) << "a vector kernel beside the scalar one";
   for (const char* precision : {"float32", "float64"}) {
-    std::vector<std::string> arguments{"--springs", "4000", "--steps", "50", "--precision", precision, "--kernel"};
+    Vector<std::string> arguments{"--springs", "4000", "--steps", "50", "--precision", precision, "--kernel"};
     for (const std::string& name : kernels()) arguments.push_back(name);
     const json rows = rows_of(arguments);
     ASSERT_EQ(rows.size(), kernels().size());
@@ -125,8 +126,9 @@ TEST(Bench, ComparesResultsThatItKept) {
   EXPECT_NE(crumble({"bench", "--compare", a, b}).out.find("other bits"), std::string::npos);
   for (const char* text : {"", "no JSON", "{}", R"({"rows": 1})", "[]"}) {
     write_text(b, text);
-    for (const auto& files : {std::vector{b}, std::vector{a, b}, std::vector{b, a}}) {
-      std::vector<std::string> arguments{"bench", "--compare"};
+    using Files = Vector<std::string>;
+    for (const auto& files : {Files{b}, Files{a, b}, Files{b, a}}) {
+      Vector<std::string> arguments{"bench", "--compare"};
       arguments.insert(arguments.end(), files.begin(), files.end());
       const Outcome outcome = crumble(arguments);
       EXPECT_EQ(outcome.code, 1);
@@ -138,7 +140,7 @@ TEST(Bench, ComparesResultsThatItKept) {
 
 TEST(Bench, RefusesWhatItDoesNotKnowAndSaysWhatThereIs) {
   const struct {
-    std::vector<std::string> arguments, message;
+    Vector<std::string> arguments, message;
   } refusals[] = {
       {{"--structure", "cubic"}, {"--structure 'cubic'", "lattice default shuffled"}},
       {{"--stick", "square"}, {"--stick 'square'", "paper scaled"}},
@@ -155,7 +157,7 @@ TEST(Bench, RefusesWhatItDoesNotKnowAndSaysWhatThereIs) {
       {{"--out", "no_such_folder/a.json", "--springs", "4000", "--steps", "5"}, {"no_such_folder/a.json"}},
   };
   for (const auto& [arguments, message] : refusals) {
-    std::vector<std::string> all{"bench"};
+    Vector<std::string> all{"bench"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     const Outcome outcome = crumble(all);
     EXPECT_GT(outcome.code, 0) << arguments[1];

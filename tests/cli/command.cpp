@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble::cli {
 namespace {
@@ -16,14 +17,14 @@ void redirect(const std::filesystem::path& path, int descriptor) {
 
 }  // namespace
 
-Outcome crumble(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+Outcome crumble(const Vector<std::string>& arguments, const std::filesystem::path& folder) {
   static int count = 0;
   const std::filesystem::path base = std::filesystem::temp_directory_path() /
                                      ("crumble-cli-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
   const std::filesystem::path out = base.string() + ".out", err = base.string() + ".err";
-  std::vector<std::string> words{CRUMBLE_CLI};
+  Vector<std::string> words{CRUMBLE_CLI};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
+  Vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 

@@ -3,7 +3,8 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble::cli {
 
@@ -13,7 +14,7 @@ struct Outcome {
 };
 
 /// `crumble arguments...`, in `folder`.
-Outcome crumble(const std::vector<std::string>& arguments,
+Outcome crumble(const Vector<std::string>& arguments,
                 const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 
 }  // namespace crumble::cli

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/trajectory.hpp"
 #include "render/temporary_folder.hpp"
 
@@ -19,7 +20,7 @@ bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-json json_of(const std::vector<std::string>& arguments) {
+json json_of(const Vector<std::string>& arguments) {
   const Outcome outcome = crumble(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return outcome.code == 0 ? json::parse(outcome.out) : json();
@@ -34,8 +35,7 @@ TEST(DevicesCommand, ListsWhatIsPluggedInAndWhatItLacks) {
   write_text(place / "product", "Touch\n");
   std::filesystem::create_directories(folder.file("usb") / "1-5");
   write_text(folder.file("usb") / "1-5" / "idVendor", "1d6b\n");
-  const std::vector<std::string> usb = {"devices", "--usb", folder.file("usb").string(), "--library",
-                                        "/no/such/libHD.so"};
+  const Vector<std::string> usb = {"devices", "--usb", folder.file("usb").string(), "--library", "/no/such/libHD.so"};
   const Outcome outcome = crumble(usb);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* part : {"USB 2988:0304 Touch at 1-4", "its driver is not", "/no/such/libHD.so", "hand"}) {
@@ -62,7 +62,7 @@ TEST(RecordCommand, RecordsAScriptWholeAndAnEndlessOneInPart) {
   const Trajectory wander = read_trajectory(out);
   EXPECT_NEAR(static_cast<double>(wander.rows.size()), 1000, 1);
   const struct {
-    std::vector<std::string> arguments;
+    Vector<std::string> arguments;
     std::string message;
   } refusals[] = {
       {{"record", out, "--device", "wander:3"}, "has no end of its own: give --seconds"},
@@ -154,9 +154,9 @@ TEST(DeviceCheck, GoesThroughAndWritesItsReport) {
 
 TEST(DeviceCheck, NobodyIsPushedUnasked) {
   const Script script(R"({"devices": [{"calibration": "none"}]})");
-  const std::vector<std::string> check = {"device-check", "--library", FAKEHD_LIBRARY, "--seconds", "0.3", "--json"};
+  const Vector<std::string> check = {"device-check", "--library", FAKEHD_LIBRARY, "--seconds", "0.3", "--json"};
   EXPECT_FALSE(json_of(check).contains("push"));
-  std::vector<std::string> push = check;
+  Vector<std::string> push = check;
   push.push_back("--push");
   const Outcome outcome = crumble(push);  // nobody at a terminal
   EXPECT_EQ(outcome.code, 1);
@@ -166,8 +166,7 @@ TEST(DeviceCheck, NobodyIsPushedUnasked) {
 }
 
 TEST(DeviceCheck, EndsEarlyWithTheReason) {
-  const std::vector<std::string> check = {"device-check", "--library", FAKEHD_LIBRARY, "--seconds", "1",
-                                          "--wait",       "0.5"};
+  const Vector<std::string> check = {"device-check", "--library", FAKEHD_LIBRARY, "--seconds", "1", "--wait", "0.5"};
   {
     const Script script(R"({"devices": [{"inkwell_at_s": -1}]})");
     const Outcome outcome = crumble(check);

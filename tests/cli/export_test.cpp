@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "cli/recorded_press.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 #include "support/mesh_files.hpp"
 
@@ -20,18 +21,18 @@ using render::TemporaryFolder;
 class ExportTest : public testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder.file(name).string(); }
-  Outcome run_export(std::vector<std::string> options) const {
+  Outcome run_export(Vector<std::string> options) const {
     options.insert(options.begin(), {"export", recording});
     return crumble(options);
   }
   // At the end of the recording, which is where `sim` is.
-  std::string at_end(const std::string& name, std::vector<std::string> options = {}) const {
+  std::string at_end(const std::string& name, Vector<std::string> options = {}) const {
     options.insert(options.end(), {"--at", "0.501", "--out", file(name)});
     const Outcome outcome = run_export(options);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return file(name);
   }
-  std::set<double> fragments_of(const std::vector<double>& ids) const { return {ids.begin(), ids.end()}; }
+  std::set<double> fragments_of(const Vector<double>& ids) const { return {ids.begin(), ids.end()}; }
   std::set<double> fragment_ids() const { return {sim.node_fragments().begin(), sim.node_fragments().end()}; }
 
   TemporaryFolder folder;
@@ -97,7 +98,7 @@ TEST_F(ExportTest, GivesTheSprings) {
   std::size_t cuts = 0;
   for (std::size_t s = 0; s < file.cells.size(); ++s) {
     const auto [a, b] = sim.mesh().springs[s];
-    ASSERT_EQ(file.cells[s], (std::vector<std::uint32_t>{a, b}));
+    ASSERT_EQ(file.cells[s], (Vector<std::uint32_t>{a, b}));
     ASSERT_EQ(file.cell_data.at("spring")[s], static_cast<double>(s));
     const Vec3 now = file.points[b] - file.points[a], rest = sim.mesh().positions[b] - sim.mesh().positions[a];
     ASSERT_NEAR(file.cell_data.at("stretch")[s], std::sqrt(now.dot(now) / rest.dot(rest)), 1e-12);
@@ -175,7 +176,7 @@ TEST_F(ExportTest, GivesASeries) {
     const VtuFile springs = read_vtu(folder.file(row.attribute("file").value()));
     EXPECT_EQ(springs.time, row.attribute("timestep").as_double());
     EXPECT_NEAR(springs.time, frame == 0 ? 0.001 : 0.1 * static_cast<double>(frame), 1e-9);
-    const std::vector<double>& intact = springs.cell_data.at("intact");
+    const Vector<double>& intact = springs.cell_data.at("intact");
     const auto cuts = static_cast<std::size_t>(std::count(intact.begin(), intact.end(), 0));
     EXPECT_GE(cuts, last_cuts);
     last_cuts = cuts;
@@ -192,7 +193,7 @@ TEST_F(ExportTest, GivesASeries) {
 
 TEST_F(ExportTest, RefusesWhatItCannotGive) {
   const std::string ply = file("surface.ply");
-  const std::vector<std::vector<std::string>> refused{
+  const Vector<Vector<std::string>> refused{
       {"--at must lie in [0, 0.501], is 0.6", "--at", "0.6", "--out", ply},
       {"--at must lie in [0, 0.501], is -0.1", "--at", "-0.1", "--out", ply},
       {"--at must be finite, is nan", "--at", "nan", "--out", ply},
@@ -211,7 +212,7 @@ TEST_F(ExportTest, RefusesWhatItCannotGive) {
       {"none/surface.ply'", "--at", "0.1", "--out", file("none/surface.ply")},
       {"none/surface'", "--every", "0.1", "--out", file("none/surface.pvd")},
   };
-  for (const std::vector<std::string>& row : refused) {
+  for (const Vector<std::string>& row : refused) {
     const Outcome outcome = run_export({row.begin() + 1, row.end()});
     EXPECT_EQ(outcome.code, 1) << row[0];
     EXPECT_NE(outcome.err.find(row[0]), std::string::npos) << outcome.err;

@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/trajectory.hpp"
 #include "render/temporary_folder.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 using render::TemporaryFolder;
-using Arguments = std::vector<std::string>;
+using Arguments = Vector<std::string>;
 
 Outcome loop(Arguments arguments) {
   arguments.insert(arguments.begin(), {"loop", "tofu_cube"});

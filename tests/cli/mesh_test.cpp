@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 #include "support/mesh_files.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 using nlohmann::json;
 using render::TemporaryFolder;
 
-json mesh_json(std::vector<std::string> arguments) {
+json mesh_json(Vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "mesh");
   arguments.push_back("--json");
   const Outcome outcome = crumble(arguments);
@@ -84,7 +85,7 @@ TEST(Mesh, WritesMeshAndSurface) {
     sum += edge(1).cross(edge(2)).dot(edge(3)) / 6;
   }
   EXPECT_NEAR(sum, 27e-6, 1e-10);
-  const std::vector<double>& kinds = body.point_data.at("kind");
+  const Vector<double>& kinds = body.point_data.at("kind");
   EXPECT_EQ(std::count(kinds.begin(), kinds.end(), 0), 8) << "corners of a cube";
   EXPECT_EQ(std::count(kinds.begin(), kinds.end(), 3), 600 - 306) << "inside";
 }

@@ -9,6 +9,7 @@
 #include "cli/recorded_press.hpp"
 #include "crumble/base/file.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "render/temporary_folder.hpp"
 
@@ -17,11 +18,11 @@ namespace {
 
 using nlohmann::json;
 using render::TemporaryFolder;
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = Vector<std::uint8_t>;
 
 constexpr std::size_t kStepBytes = 7 * 8;  // a pose
-constexpr std::size_t kTail =
-    8 + 8 + 8 + 8;  // the numbers of changes to fragments, forces and contact, none; the checksum
+// The numbers of changes to fragments, forces, contact and definition, none; the checksum.
+constexpr std::size_t kTail = 8 + 8 + 8 + 8 + 8;
 
 class RecordingTest : public testing::Test {
  protected:

@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 
 namespace crumble::cli {
@@ -13,8 +14,8 @@ namespace {
 using render::TemporaryFolder;
 
 struct Refusal {
-  std::vector<std::string> arguments;
-  std::vector<std::string> message;  // parts
+  Vector<std::string> arguments;
+  Vector<std::string> message;  // parts
 };
 
 void expect_refused(const Refusal& refusal) {
@@ -35,7 +36,11 @@ std::string bytes_of(const std::filesystem::path& path, std::size_t size) {
 }
 
 TEST(Refusals, NameTheOptionAndTheValue) {
-  const std::vector<Refusal> refusals{
+  const Vector<Refusal> refusals{
+      {{"run", "tofu_cube", "--change", "0.5"}, {"--change '0.5'", "TIME:FIELD=VALUE"}},
+      {{"run", "tofu_cube", "--change", "0.5:taste=3"}, {"'taste'", "stiffness damping_ratio"}},
+      {{"run", "tofu_cube", "--change", "-1:stiffness=60"}, {"--change TIME", "-1"}},
+      {{"run", "tofu_cube", "--change", "0.01:stiffness=-60", "--seconds", "0.1"}, {"stiffness", "-60"}},
       {{"run", "tofu_pyramid"}, {"'tofu_pyramid'", "tofu_cube_upright"}},
       {{"run", "tofu_cube", "--dt", "0"}, {"--dt must be positive, is 0"}},
       {{"run", "tofu_cube", "--dt", "-0.001"}, {"--dt must be positive, is -0.001"}},
@@ -69,7 +74,7 @@ TEST(Refusals, NameTheOptionAndTheValue) {
 }
 
 TEST(Refusals, OfMeshes) {
-  const std::vector<Refusal> refusals{
+  const Vector<Refusal> refusals{
       {{"mesh", "cone", "0.1"}, {"mesh 'cone'", "cylinder"}},
       {{"mesh", "cube", "0.03"}, {"mesh cube takes no sizes"}},
       {{"mesh", "box", "0.03", "0.03", "--spacing", "0.005"}, {"mesh box takes X Y Z", "2"}},

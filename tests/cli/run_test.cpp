@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 #include "render/temporary_folder.hpp"
 #include "support/mesh_files.hpp"
@@ -18,7 +19,7 @@ namespace {
 using nlohmann::json;
 using render::TemporaryFolder;
 
-json run_json(std::vector<std::string> arguments) {
+json run_json(Vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "run");
   arguments.push_back("--json");
   const Outcome outcome = crumble(arguments);
@@ -47,7 +48,7 @@ TEST(Run, PrintsOneJsonObject) {
   EXPECT_LT(result.at("cuts"), springs);
   EXPECT_GE(result.at("fragments"), 1);
   EXPECT_EQ(result.at("precision"), "float64");
-  const std::vector<std::string> kernels = kernel_names();
+  const Vector<std::string> kernels = kernel_names();
   EXPECT_EQ(std::count(kernels.begin(), kernels.end(), result.at("kernel").get<std::string>()), 1);
   EXPECT_EQ(result.at("threads"), 1);
   const json& layout = result.at("layout");
@@ -84,7 +85,7 @@ TEST(Run, PrintsOneJsonObject) {
 }
 
 TEST(Run, GivesTheSameHashTwice) {
-  const std::vector<std::string> arguments{"tofu_cube", "--device", "press:40", "--seconds", "0.4"};
+  const Vector<std::string> arguments{"tofu_cube", "--device", "press:40", "--seconds", "0.4"};
   json first = run_json(arguments), second = run_json(arguments);
   EXPECT_GT(first.at("cuts"), 0);
   for (json* result : {&first, &second}) {  // all is the same but the time it took
@@ -96,14 +97,13 @@ TEST(Run, GivesTheSameHashTwice) {
 
 TEST(Run, GivesTheSameHashWithEveryKernelAndNumberOfThreads) {
   for (const char* precision : {"float64", "float32"}) {
-    const std::vector<std::string> press{"tofu_cube", "--device",    "press:40", "--seconds",
-                                         "0.4",       "--precision", precision};
+    const Vector<std::string> press{"tofu_cube", "--device", "press:40", "--seconds", "0.4", "--precision", precision};
     const json chosen = run_json(press);
     EXPECT_EQ(chosen.at("precision"), precision);
     EXPECT_GT(chosen.at("cuts"), 0);
     for (const std::string& kernel : kernel_names()) {
       SCOPED_TRACE(kernel + " " + precision);
-      std::vector<std::string> arguments = press;
+      Vector<std::string> arguments = press;
       arguments.insert(arguments.end(), {"--kernel", kernel, "--threads", "2"});
       const json result = run_json(arguments);
       EXPECT_EQ(result.at("kernel"), kernel);
@@ -115,8 +115,8 @@ TEST(Run, GivesTheSameHashWithEveryKernelAndNumberOfThreads) {
 
 // Before the first crack, which would grow from the last bit.
 TEST(Run, SinglePrecisionDiffersByLittle) {
-  const std::vector<std::string> press{"tofu_cube", "--device", "press:10", "--seconds", "0.2"};
-  std::vector<std::string> single = press;
+  const Vector<std::string> press{"tofu_cube", "--device", "press:10", "--seconds", "0.2"};
+  Vector<std::string> single = press;
   single.insert(single.end(), {"--precision", "float32"});
   const json exact = run_json(press), rough = run_json(single);
   ASSERT_EQ(exact.at("cuts"), 0);
@@ -211,6 +211,16 @@ TEST(Run, WritesEveryFileIntoAFolderItMakes) {
   // again into the same folder
   EXPECT_EQ(crumble({"run", "tofu_cube", "--seconds", "0.05", "--out", out.string()}).code, 0);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out), {}), 10);
+}
+
+TEST(Run, ChangesTheBodyInMidRunAndRecordsIt) {
+  const TemporaryFolder folder;
+  const auto out = folder.file("stiffer");
+  const json as_is = run_json({"tofu_slab", "--device", "press:10", "--seconds", "0.3"});
+  const json stiffer = run_json({"tofu_slab", "--device", "press:10", "--seconds", "0.3", "--change",
+                                 "0.2:stiffness=60", "--change", "0.2:length_limit=1.5", "--out", out.string()});
+  EXPECT_NEAR(stiffer.at("peak_force_n").get<double>() / as_is.at("peak_force_n").get<double>(), 2, 0.4);
+  EXPECT_EQ(crumble({"replay", (out / "experiment.crec").string()}).code, 0);
 }
 
 TEST(Run, TellsTheForceOnEachTool) {

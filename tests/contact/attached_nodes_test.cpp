@@ -3,6 +3,7 @@
 
 #include "contact/contact_rig.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -11,13 +12,13 @@ struct AttachedRig {
   NodeArrays nodes;
   Contacts contacts;
 
-  AttachedRig(const std::vector<Vec3>& start, std::vector<Attachment> attachments, std::vector<Tool> tools = {},
-              std::vector<Wall> walls = {})
+  AttachedRig(const Vector<Vec3>& start, Vector<Attachment> attachments, Vector<Tool> tools = {},
+              Vector<Wall> walls = {})
       : nodes(start),
-        contacts(std::move(tools), std::move(walls), std::vector<std::uint8_t>(start.size()),
-                 ContactRule::nearest_surface, std::move(attachments)) {}
+        contacts(std::move(tools), std::move(walls), Vector<std::uint8_t>(start.size()), ContactRule::nearest_surface,
+                 std::move(attachments)) {}
 
-  void touch(const std::vector<Pose>& poses) {
+  void touch(const Vector<Pose>& poses) {
     for (std::size_t h = 0; h < poses.size(); ++h) contacts.move_holder(h, poses[h], kTau);
     for (std::uint32_t place = 0; place < contacts.place_count(); ++place) {
       contacts.find(place, nodes), contacts.project(nodes);
@@ -28,10 +29,10 @@ struct AttachedRig {
 TEST(AttachedNodes, GoWhereTheFrameGoesWithoutDrift) {
   Random random(3);
   Pose pose = random_pose(random);
-  const std::vector<Vec3> start{random_vector(random), random_vector(random), random_vector(random)};
+  const Vector<Vec3> start{random_vector(random), random_vector(random), random_vector(random)};
   AttachedRig rig(start, {{{0, 2}}});
   rig.touch({pose});
-  std::vector<Vec3> locals;
+  Vector<Vec3> locals;
   for (const Vec3& p : start) locals.push_back(pose.orientation.conjugate() * (p - pose.position));
   for (const std::uint32_t i : {0u, 2u}) EXPECT_LT(norm(rig.nodes.positions[i] - start[i]), 1e-15) << "first placing";
   for (int step = 0; step < 100000; ++step) {
@@ -113,7 +114,7 @@ TEST(AttachedNodes, AJumpLeavesThemWhereTheyAreAndTakesHoldOfThemAnew) {
 TEST(AttachedNodes, ContinueFromASnapshotWithTheSameBits) {
   Random random(5);
   AttachedRig live({{0.1, 0.2, 0.3}, {0.3, 0.1, 0}, {5, 5, 5}}, {{{1}}, {{0}}}, {bar(0.01, 0.01, 0.01)});
-  std::vector<Pose> poses{at(0, 0, 0), random_pose(random), random_pose(random)};
+  Vector<Pose> poses{at(0, 0, 0), random_pose(random), random_pose(random)};
   live.touch(poses);
   const auto move = [&] {
     for (Pose& pose : poses) pose = renormalized({pose.position + 1e-4 * random_vector(random), pose.orientation});
@@ -136,7 +137,7 @@ TEST(AttachedNodes, ContinueFromASnapshotWithTheSameBits) {
     }
   }
   // the second contact's node made that of the first
-  std::vector<std::uint8_t> bytes = out.bytes();
+  Vector<std::uint8_t> bytes = out.bytes();
   const std::size_t first = bytes.size() - 2 * (17 + 8 + 15 * 8);
   std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(first), 8,
               bytes.end() - static_cast<std::ptrdiff_t>((bytes.size() - first) / 2));
@@ -145,9 +146,9 @@ TEST(AttachedNodes, ContinueFromASnapshotWithTheSameBits) {
 }
 
 TEST(AttachedNodes, AreCheckedAtSetUp) {
-  const auto code_of = [](std::vector<Attachment> attachments) {
+  const auto code_of = [](Vector<Attachment> attachments) {
     try {
-      const Contacts contacts({}, {}, std::vector<std::uint8_t>{0, 0, 1}, ContactRule::nearest_surface,
+      const Contacts contacts({}, {}, Vector<std::uint8_t>{0, 0, 1}, ContactRule::nearest_surface,
                               std::move(attachments));
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("attachments[1].nodes"), std::string::npos) << error.what();

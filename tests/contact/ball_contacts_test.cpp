@@ -6,6 +6,7 @@
 #include "contact/brute_balls.hpp"
 #include "contact/crumb_rig.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "support/allocation_counter.hpp"
@@ -13,7 +14,7 @@
 namespace crumble {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
+using Ids = Vector<std::uint32_t>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vec3 random_vector(Random& random, double size) {
@@ -114,7 +115,7 @@ struct Turmoil {
     balls.add_to(hash);
     return hash.value();
   }
-  std::vector<std::uint8_t> saved() const {
+  Vector<std::uint8_t> saved() const {
     ByteWriter out;
     balls.save(out);
     return out.bytes();
@@ -123,11 +124,11 @@ struct Turmoil {
   Random random;
   TetMesh mesh;
   BallContacts balls;
-  std::vector<Vec3> x, v;
-  std::vector<std::uint8_t> intact;
-  std::vector<bool> removed;
+  Vector<Vec3> x, v;
+  Vector<std::uint8_t> intact;
+  Vector<bool> removed;
   Ids labels, last_cuts;
-  std::vector<BallFragment> fragments;
+  Vector<BallFragment> fragments;
 };
 
 TEST(BallContacts, FindsWhatAllPairsFind) {
@@ -228,7 +229,7 @@ TEST(BallContacts, CutGivesNoKick) {
 
 TEST(BallContacts, ForcesOfAllSumToZero) {
   Random random(12);
-  std::vector<Vec3> nodes;
+  Vector<Vec3> nodes;
   Ids labels;
   for (std::uint32_t i = 0; i < 300; ++i) nodes.push_back(random_vector(random, 0.012)), labels.push_back(i / 2);
   CrumbRig rig({.positions = nodes, .labels = labels});
@@ -323,7 +324,7 @@ TEST(BallContacts, DamagedSnapshotsAreRefused) {
 
 TEST(BallContacts, PairsBeyondTheRoomAreCounted) {
   Random random(2);
-  std::vector<Vec3> nodes;
+  Vector<Vec3> nodes;
   Ids labels;
   for (std::uint32_t i = 0; i < 40; ++i) nodes.push_back(random_vector(random, 1e-4)), labels.push_back(i);
   CrumbRig rig({.positions = nodes, .labels = labels});

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/ball_contacts.hpp"
 #include "crumble/fracture/fragments.hpp"
 
@@ -16,9 +16,9 @@ namespace crumble {
 class BruteBalls {
  public:
   struct Body {
-    std::vector<Edge> springs;
-    std::vector<double> radii, masses, stiffnesses, stiffness_sums;
-    std::vector<std::uint8_t> on_surface, fixed;
+    Vector<Edge> springs;
+    Vector<double> radii, masses, stiffnesses, stiffness_sums;
+    Vector<std::uint8_t> on_surface, fixed;
     Friction friction;
     double tau;
 
@@ -32,8 +32,7 @@ class BruteBalls {
     for (const auto& [a, b] : body_.springs) joined_.insert({a, b});
   }
 
-  void update(const std::vector<std::uint32_t>& cuts, std::vector<std::uint32_t> labels,
-              std::vector<BallFragment> fragments) {
+  void update(const Vector<std::uint32_t>& cuts, Vector<std::uint32_t> labels, Vector<BallFragment> fragments) {
     for (const std::uint32_t spring : cuts) {
       const auto [a, b] = body_.springs[spring];
       joined_.erase({a, b});
@@ -43,8 +42,8 @@ class BruteBalls {
   }
 
   /// Force on the first node of each pair that touches.
-  std::map<Pair, Vec3> find(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
-    std::vector<Pair> touching;
+  std::map<Pair, Vec3> find(const Vector<Vec3>& x, const Vector<Vec3>& v) {
+    Vector<Pair> touching;
     for (std::uint32_t a = 0; a < x.size(); ++a) {
       for (std::uint32_t b = a + 1; b < x.size(); ++b) {
         if (!may_touch(a, b)) continue;
@@ -109,9 +108,9 @@ class BruteBalls {
 
   Body body_;
   std::set<Pair> joined_;
-  std::vector<bool> exposed_;
-  std::vector<std::uint32_t> labels_;
-  std::vector<BallFragment> fragments_;
+  Vector<bool> exposed_;
+  Vector<std::uint32_t> labels_;
+  Vector<BallFragment> fragments_;
   std::map<Pair, Memory> memories_;
 };
 

@@ -1,9 +1,8 @@
 // Contact alone: nodes without springs, and the test plays the solver between finding and remembering.
 #pragma once
 
-#include <vector>
-
 #include "contact/sticks.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/contact/contacts.hpp"
@@ -28,7 +27,7 @@ struct NodeArrays : NodeSource {
   bool culls = true;
 
   NodeArrays() = default;
-  explicit NodeArrays(const std::vector<Vec3>& nodes) : positions(nodes), velocities(nodes.size()) {
+  explicit NodeArrays(const Vector<Vec3>& nodes) : positions(nodes), velocities(nodes.size()) {
     found_.reserve(nodes.size());
   }
   std::size_t node_count() const noexcept override { return positions.size(); }
@@ -58,28 +57,27 @@ struct NodeArrays : NodeSource {
 };
 
 inline NodeArrays far_away(std::size_t n) {
-  return NodeArrays(std::vector<Vec3>(n, {100, 100, 100}));
+  return NodeArrays(Vector<Vec3>(n, {100, 100, 100}));
 }
 
 struct ContactRig {
   Contacts contacts;
   NodeArrays nodes;
 
-  ContactRig(std::vector<Tool> tools, const std::vector<Vec3>& start, ContactRule rule = ContactRule::nearest_surface,
-             std::vector<Wall> walls = {}, std::vector<std::uint8_t> fixed = {})
-      : contacts(std::move(tools), std::move(walls), fixed.empty() ? std::vector<std::uint8_t>(start.size()) : fixed,
-                 rule),
+  ContactRig(Vector<Tool> tools, const Vector<Vec3>& start, ContactRule rule = ContactRule::nearest_surface,
+             Vector<Wall> walls = {}, Vector<std::uint8_t> fixed = {})
+      : contacts(std::move(tools), std::move(walls), fixed.empty() ? Vector<std::uint8_t>(start.size()) : fixed, rule),
         nodes(start) {}
 
   /// Puts the tools down while the nodes are elsewhere, so that they are engaged wherever the nodes are.
-  void engage(const std::vector<Pose>& poses) {
+  void engage(const Vector<Pose>& poses) {
     NodeArrays elsewhere = far_away(nodes.node_count());
     for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_holder(t, poses[t], kTau);
     contacts.find(0, elsewhere);
   }
 
   /// Stages 1 and 2.
-  void touch(const std::vector<Pose>& poses) noexcept {
+  void touch(const Vector<Pose>& poses) noexcept {
     for (std::size_t t = 0; t < poses.size(); ++t) contacts.move_holder(t, poses[t], kTau);
     for (std::uint32_t place = 0; place < contacts.place_count(); ++place) {
       contacts.find(place, nodes);

@@ -6,12 +6,13 @@
 #include <set>
 
 #include "contact/contact_rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
 
-std::vector<Vec3> random_nodes_inside(const Stick& stick, const Pose& pose, int count, Random& random) {
-  std::vector<Vec3> nodes;
+Vector<Vec3> random_nodes_inside(const Stick& stick, const Pose& pose, int count, Random& random) {
+  Vector<Vec3> nodes;
   const Frame frame(pose);
   while (nodes.size() < static_cast<std::size_t>(count)) {
     const Vec3 local = random_vector(random).cwiseProduct(stick.size / 2);
@@ -24,7 +25,7 @@ TEST(Contacts, NearestRulePushesEachNodeToTheNearestFace) {
   Random random(1);
   for (const Stick& stick : paper_sticks()) {
     const Pose pose = random_pose(random);
-    const std::vector<Vec3> nodes = random_nodes_inside(stick, pose, 200, random);
+    const Vector<Vec3> nodes = random_nodes_inside(stick, pose, 200, random);
     ContactRig rig({{stick.shape, kPaperFriction}}, nodes);
     rig.engage({pose});
     rig.touch({pose});
@@ -56,7 +57,7 @@ TEST(Contacts, PaperRulePushesEachNodeAlongTheToolsMotion) {
     const Quat turn = axis_angle(random_direction(random), 1e-3);
     const Pose after =
         renormalized({before.position + 5e-5 * random_direction(random), multiply(turn, before.orientation)});
-    const std::vector<Vec3> nodes = random_nodes_inside(stick, after, 200, random);
+    const Vector<Vec3> nodes = random_nodes_inside(stick, after, 200, random);
     ContactRig rig({{stick.shape, kPaperFriction}}, nodes, ContactRule::along_motion);
     rig.engage({before});
     rig.touch({after});
@@ -169,7 +170,7 @@ TEST(Contacts, ReleasedInASubstepIsNotHeldInTheNext) {
 
 TEST(Contacts, FixedNodesAreNeverHeld) {
   const Wall floor{{{0, 1, 0}, 0}, kPaperFriction};
-  const std::vector<Vec3> nodes{{0, -0.0029, 0}, {0.001, -0.0029, 0}, {1, -0.1, 0}, {2, -0.1, 0}};
+  const Vector<Vec3> nodes{{0, -0.0029, 0}, {0.001, -0.0029, 0}, {1, -0.1, 0}, {2, -0.1, 0}};
   ContactRig rig({bar(0.01, 0.006, 0.05)}, nodes, ContactRule::nearest_surface, {floor}, {1, 0, 1, 0});
   rig.engage({at(0, 0, 0)});
   rig.touch({at(0, 0, 0)});
@@ -184,7 +185,7 @@ TEST(Contacts, WallKeepsNodesOnItsSide) {
   Random random(6);
   const Vec3 n = random_direction(random);
   const Wall wall{{n, 0.02}, {0.8, 0.5}};
-  std::vector<Vec3> nodes;
+  Vector<Vec3> nodes;
   for (int i = 0; i < 200; ++i) nodes.push_back(0.05 * random_vector(random));
   ContactRig rig({}, nodes, ContactRule::nearest_surface, {wall});
   for (std::size_t i = 0; i < nodes.size(); ++i) rig.nodes.velocities.set(i, {1, 2, 3});
@@ -239,10 +240,10 @@ TEST(Contacts, ToolTakesANodeFromAWall) {
 TEST(Contacts, EachNodeHasOneHolderAndTheLowerToolIndexWins) {
   Random random(7);
   const Wall floor{{{0, 1, 0}, -0.002}, kPaperFriction};
-  std::vector<Vec3> nodes;
+  Vector<Vec3> nodes;
   for (int i = 0; i < 400; ++i) nodes.push_back(0.006 * random_vector(random));
   ContactRig rig({bar(0.006, 0.006, 0.02), bar(0.006, 0.006, 0.02)}, nodes, ContactRule::nearest_surface, {floor});
-  std::vector<Pose> poses{at(-0.002, 0, 0), at(0.002, 0, 0)};
+  Vector<Pose> poses{at(-0.002, 0, 0), at(0.002, 0, 0)};
   rig.engage(poses);
   std::size_t taken_over = 0;
   for (int step = 0; step < 300; ++step) {

@@ -7,17 +7,17 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <vector>
 
 #include "contact/ball_forces.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/ball_contacts.hpp"
 #include "crumble/fracture/fragments.hpp"
 
 namespace crumble {
 
 struct Crumb {
-  std::vector<std::uint32_t> nodes;
-  std::vector<Vec3> local;  // from the center, in the crumb's frame
+  Vector<std::uint32_t> nodes;
+  Vector<Vec3> local;  // from the center, in the crumb's frame
   double mass = 0;
   Mat3 inertia = Mat3::Zero();
   Vec3 center = Vec3::Zero(), velocity = Vec3::Zero(), momentum = Vec3::Zero();  // angular
@@ -26,13 +26,13 @@ struct Crumb {
 };
 
 struct RigSetup {
-  std::vector<Vec3> positions;
-  std::vector<std::uint32_t> labels;  // crumb of each node
+  Vector<Vec3> positions;
+  Vector<std::uint32_t> labels;  // crumb of each node
   double node_mass = 5e-5, tau = 1e-3;
   Friction friction{0.5, 0.5};
-  std::vector<std::uint32_t> fixed_crumbs = {};
-  std::vector<double> radii = {};  // 2.2 mm where empty
-  std::vector<Edge> springs = {};  // all between crumbs are cut
+  Vector<std::uint32_t> fixed_crumbs = {};
+  Vector<double> radii = {};  // 2.2 mm where empty
+  Vector<Edge> springs = {};  // all between crumbs are cut
 };
 
 class CrumbRig {
@@ -52,8 +52,8 @@ class CrumbRig {
     sync();
   }
 
-  std::vector<BallFragment> fragments() const {
-    std::vector<BallFragment> list;
+  Vector<BallFragment> fragments() const {
+    Vector<BallFragment> list;
     for (const Crumb& c : crumbs) {
       list.push_back({c.fixed ? std::numeric_limits<double>::infinity() : c.mass, c.asleep});
     }
@@ -76,7 +76,7 @@ class CrumbRig {
   }
 
   void move() {
-    std::vector<Vec3> force(positions.size(), Vec3::Zero());
+    Vector<Vec3> force(positions.size(), Vec3::Zero());
     for (std::size_t i = 0; i < balls->pushed().size(); ++i) force[balls->pushed()[i]] = balls->forces()[i];
     if (floor) push_from_floor(force);
     for (Crumb& crumb : crumbs) {
@@ -107,8 +107,8 @@ class CrumbRig {
 
   VecArray positions, velocities;  // by node
   double tau;
-  std::vector<std::uint32_t> labels;
-  std::vector<Crumb> crumbs;
+  Vector<std::uint32_t> labels;
+  Vector<Crumb> crumbs;
   std::unique_ptr<BallContacts> balls;
   Vec3 gravity{0, -9.81, 0};
   bool floor = true;  // at y = 0: node centers stay above
@@ -116,13 +116,13 @@ class CrumbRig {
  private:
   void make_balls(const RigSetup& setup) {
     const std::size_t count = labels.size();
-    std::vector<std::uint8_t> fixed(count), on_surface(count, 1);
+    Vector<std::uint8_t> fixed(count), on_surface(count, 1);
     for (std::uint32_t i = 0; i < count; ++i) fixed[i] = crumbs[labels[i]].fixed;
-    const std::vector<double> masses(count, setup.node_mass), stiffnesses(count, 30.0), sums(count, 390.0);
-    const std::vector<double> radii = setup.radii.empty() ? std::vector<double>(count, 0.0022) : setup.radii;
+    const Vector<double> masses(count, setup.node_mass), stiffnesses(count, 30.0), sums(count, 390.0);
+    const Vector<double> radii = setup.radii.empty() ? Vector<double>(count, 0.0022) : setup.radii;
     balls = std::make_unique<BallContacts>(
         BallSetup{setup.springs, radii, masses, stiffnesses, sums, on_surface, fixed, setup.friction, tau});
-    std::vector<std::uint32_t> cuts;
+    Vector<std::uint32_t> cuts;
     for (std::uint32_t s = 0; s < setup.springs.size(); ++s) {
       if (labels[setup.springs[s][0]] != labels[setup.springs[s][1]]) cuts.push_back(s);
     }
@@ -146,7 +146,7 @@ class CrumbRig {
     return turn * c.inertia.inverse() * turn.transpose() * c.momentum;
   }
 
-  void move(Crumb& c, const std::vector<Vec3>& force) {
+  void move(Crumb& c, const Vector<Vec3>& force) {
     Vec3 sum = c.mass * gravity, torque = Vec3::Zero();
     for (const std::uint32_t i : c.nodes) {
       sum += force[i];
@@ -171,7 +171,7 @@ class CrumbRig {
   }
 
   // A pair of the node with the floor below it, by the library's own law: the test is of the pile, not of the floor.
-  void push_from_floor(std::vector<Vec3>& force) {
+  void push_from_floor(Vector<Vec3>& force) {
     BallBlock block{};
     for (const Crumb& c : crumbs) {
       double low = 0;

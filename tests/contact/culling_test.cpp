@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/contact_rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -9,17 +10,17 @@ namespace {
 constexpr std::uint32_t kCloud = 500;
 
 // Two sticks, a floor and a slanted wall in a cloud of nodes, one in eight of them fixed.
-ContactRig make_rig(const std::vector<Stick>& sticks, ContactRule rule, std::uint64_t seed) {
+ContactRig make_rig(const Vector<Stick>& sticks, ContactRule rule, std::uint64_t seed) {
   Random random(seed);
-  std::vector<Vec3> nodes;
-  std::vector<std::uint8_t> fixed;
+  Vector<Vec3> nodes;
+  Vector<std::uint8_t> fixed;
   std::size_t count = kCloud;
   for (const Stick& stick : sticks) count += stick.shape.vertices.size();
   for (std::size_t i = 0; i < count; ++i) {
     nodes.push_back(0.012 * random_vector(random));
     fixed.push_back(i < kCloud && i % 8 == 0);
   }
-  std::vector<Tool> tools;
+  Vector<Tool> tools;
   for (const Stick& stick : sticks) tools.push_back({stick.shape, kPaperFriction});
   const Wall floor{{{0, 1, 0}, -0.01}, kPaperFriction}, slope{{normalized(Vec3(1, 0.3, -0.2)), -0.009}, {0.5, 0.2}};
   return {tools, nodes, rule, {floor, slope}, fixed};
@@ -28,12 +29,12 @@ ContactRig make_rig(const std::vector<Stick>& sticks, ContactRule rule, std::uin
 class Culling : public testing::TestWithParam<ContactRule> {
  protected:
   void run(std::uint64_t seed) {
-    const std::vector<Stick> all = paper_sticks();
-    const std::vector<Stick> sticks{all[seed % 4], all[(seed + 1) % 3]};
+    const Vector<Stick> all = paper_sticks();
+    const Vector<Stick> sticks{all[seed % 4], all[(seed + 1) % 3]};
     ContactRig culled = make_rig(sticks, GetParam(), seed), plain = make_rig(sticks, GetParam(), seed);
     plain.nodes.culls = false;
     Random random(seed + 1000);
-    std::vector<Pose> poses{random_pose(random), random_pose(random)};
+    Vector<Pose> poses{random_pose(random), random_pose(random)};
     for (Pose& pose : poses) pose.position *= 0.02 / 0.1;
     for (const bool first : {true, false}) (first ? culled : plain).engage(poses);
     for (int step = 0; step < 200; ++step) {
@@ -57,8 +58,7 @@ class Culling : public testing::TestWithParam<ContactRule> {
   }
 
   // Where a box about the tool ends: inside and outside by the last bits of a coordinate.
-  static void put_nodes_on_corners(const std::vector<Pose>& poses, ContactRig& culled, ContactRig& plain,
-                                   Random& random) {
+  static void put_nodes_on_corners(const Vector<Pose>& poses, ContactRig& culled, ContactRig& plain, Random& random) {
     std::uint32_t node = kCloud;
     for (std::size_t t = 0; t < poses.size(); ++t) {
       for (const Vec3& corner : culled.contacts.tools()[t].shape->surface().vertices) {
@@ -115,16 +115,16 @@ TEST(ContactOrder, ThoseHeldBeforeStayFirstAndTheRestFollowsInTheOrderOfTheSearc
   ContactRig rig({bar(0.01, 0.006, 0.05)},
                  {{0.003, -0.0031, 0}, {0, -0.0029, 0}, {0.002, -0.0031, 0}, {-0.002, -0.0029, 0}});
   const auto order = [&] {
-    std::vector<std::uint32_t> nodes;
+    Vector<std::uint32_t> nodes;
     for (const NodeConstraint& c : rig.contacts.constraints()) nodes.push_back(c.node);
     return nodes;
   };
   rig.engage({at(0, 0, 0)});
   rig.touch({at(0, 0, 0)});
-  EXPECT_EQ(order(), (std::vector<std::uint32_t>{1, 3}));
+  EXPECT_EQ(order(), (Vector<std::uint32_t>{1, 3}));
   rig.decide(ContactState::stick);
   rig.touch({at(0, -0.0002, 0)});
-  EXPECT_EQ(order(), (std::vector<std::uint32_t>{1, 3, 0, 2}));
+  EXPECT_EQ(order(), (Vector<std::uint32_t>{1, 3, 0, 2}));
 }
 
 TEST(ContactOrder, NodesThatAreNotNumbersAreNotTakenIn) {

@@ -2,13 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "contact/contact_rig.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
 
 TEST(ToolMotion, ToolThatStartsInsideHoldsNothingUntilItHasBeenOutside) {
   const double tops[] = {0, 0.001, 0.002};
-  std::vector<Vec3> nodes;
+  Vector<Vec3> nodes;
   for (const double y : tops) nodes.push_back({0, y, 0});
   ContactRig rig({bar(0.006, 0.006, 0.05)}, nodes);
   const auto expect_untouched = [&](double y) {
@@ -106,7 +107,7 @@ TEST(ToolMotion, FastThinToolDoesNotPassItsNodes) {
     const Pose start = random_pose(random);
     const Frame frame(start);
     const double per_step = random.uniform(0.1, 7.9) * tool.shape->half_thickness();
-    std::vector<Vec3> nodes;
+    Vector<Vec3> nodes;
     for (int i = 0; i < 20; ++i) {  // farther from the sides than the depth that one place can bring
       nodes.push_back(frame.to_scene(
           {random.uniform(0.002, 0.05), random.uniform(-0.0034, 0.0034), random.uniform(-0.023, 0.023)}));
@@ -135,14 +136,14 @@ TEST(ToolMotion, FastRoundStickMeetsWhatIsOnItsWay) {
     const Pose start = random_pose(random);
     const Frame frame(start);
     const double per_step = random.uniform(0.1, 7.9) * tool.shape->half_thickness();
-    std::vector<Vec3> nodes;
+    Vector<Vec3> nodes;
     for (int i = 0; i < 50; ++i) {  // where its chord is longer than a place
       nodes.push_back(
           frame.to_scene({random.uniform(0.0041, 0.05), random.uniform(-0.0033, 0.0033), random.uniform(-0.02, 0.02)}));
     }
     ContactRig rig({tool}, nodes);
     rig.touch({start});
-    std::vector<bool> met(nodes.size());
+    Vector<bool> met(nodes.size());
     double gone = 0;
     while (gone < 0.06) {
       gone += per_step;
@@ -191,8 +192,8 @@ class WanderingStick {
   std::size_t contacts() const { return contacts_; }
 
  private:
-  static std::vector<Vec3> cloud() {
-    std::vector<Vec3> nodes;
+  static Vector<Vec3> cloud() {
+    Vector<Vec3> nodes;
     for (int i = 0; i < 12 * 12 * 12; ++i)
       nodes.push_back(0.002 * Vec3(i % 12 - 5.5, i / 12 % 12 - 5.5, i / 144 - 5.5));
     return nodes;
@@ -210,7 +211,7 @@ class WanderingStick {
     return greatest;
   }
   void solve() {
-    std::vector<bool> stays(home_.size());
+    Vector<bool> stays(home_.size());
     for (NodeConstraint& c : rig_.contacts.constraints()) {
       const std::uint64_t dice = random_.below(20);
       c.state = dice == 0                                    ? ContactState::released

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/tool_kinds.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -65,7 +66,7 @@ double deepest(const ContactRig& rig) {
 
 // What a solver may do: held nodes stick, slide along their tangent plane or are let go; free ones leap.
 std::size_t solve_wildly(ContactRig& rig, Random& random) {
-  std::vector<bool> stays(rig.nodes.node_count());
+  Vector<bool> stays(rig.nodes.node_count());
   for (NodeConstraint& c : rig.contacts.constraints()) {
     c.state = static_cast<ContactState>(1 + random.below(3));
     stays[c.node] = c.state == ContactState::stick;
@@ -83,15 +84,15 @@ std::size_t solve_wildly(ContactRig& rig, Random& random) {
   return leapt_in;
 }
 
-std::vector<Vec3> cloud(Random& random, int count) {
-  std::vector<Vec3> nodes;
+Vector<Vec3> cloud(Random& random, int count) {
+  Vector<Vec3> nodes;
   for (int i = 0; i < count; ++i) nodes.push_back(0.03 * random_vector(random));
   return nodes;
 }
 
 // Every kind beside another one; their homes are so far apart that they never overlap.
 TEST(PushOut, LeavesNoNodeInsideAnyToolWhateverTheMotion) {
-  const std::vector<ToolKind> kinds = tool_kinds();
+  const Vector<ToolKind> kinds = tool_kinds();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const ToolKind &one = kinds[k], &other = kinds[(k + 3) % kinds.size()];
     const bool slow = !one.convex || !other.convex || one.name == "ellipsoid" || other.name == "ellipsoid";
@@ -141,9 +142,8 @@ TEST(PushOut, AFreeNodeBecomesAFreshContactAndASlidingOneStaysOne) {
 }
 
 TEST(PushOut, LeavesAloneWhatIsFixedAttachedExcludedOrUnderAJump) {
-  const std::vector<Vec3> nodes(3, {0, -0.0029, 0});
-  Contacts contacts({bar(0.01, 0.006, 0.05)}, {}, std::vector<std::uint8_t>{1, 0, 0}, ContactRule::nearest_surface,
-                    {{{1}}});
+  const Vector<Vec3> nodes(3, {0, -0.0029, 0});
+  Contacts contacts({bar(0.01, 0.006, 0.05)}, {}, Vector<std::uint8_t>{1, 0, 0}, ContactRule::nearest_surface, {{{1}}});
   NodeArrays source(nodes), elsewhere = far_away(3);
   contacts.exclude(2);
   contacts.move_holder(0, at(0, 0, 0), kTau);

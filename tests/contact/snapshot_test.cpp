@@ -6,6 +6,7 @@
 
 #include "contact/contact_rig.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace crumble {
@@ -17,13 +18,13 @@ struct Kneading {
 
   static ContactRig make_rig() {
     Random random(41);
-    std::vector<Vec3> nodes;
-    std::vector<std::uint8_t> fixed;
+    Vector<Vec3> nodes;
+    Vector<std::uint8_t> fixed;
     for (int i = 0; i < 600; ++i) {
       nodes.push_back({random.uniform(-0.015, 0.015), random.uniform(0, 0.03), random.uniform(-0.015, 0.015)});
       fixed.push_back(i % 10 == 0);
     }
-    const std::vector<Stick> sticks = paper_sticks();
+    const Vector<Stick> sticks = paper_sticks();
     return {{{sticks[0].shape, kPaperFriction}, {sticks[2].shape, {0.8, 0.4}}},
             nodes,
             ContactRule::nearest_surface,
@@ -31,7 +32,7 @@ struct Kneading {
             fixed};
   }
 
-  static std::vector<Pose> poses(int step) {
+  static Vector<Pose> poses(int step) {
     const double s = step * 5e-5, leap = step % 150 == 149 ? 0.1 : 0;  // a jump now and then
     return {{Vec3(0.004 + leap, 0.036 - s, 0), axis_angle(Vec3::UnitY(), 0.2 * s / 0.01)},
             {Vec3(-0.006, 0.04 - s, 0.003), axis_angle(Vec3::UnitZ(), -0.1 * s / 0.01)}};
@@ -50,7 +51,7 @@ struct Kneading {
     }
     rig.contacts.drop_released();
   }
-  std::vector<std::uint8_t> saved() const {
+  Vector<std::uint8_t> saved() const {
     ByteWriter out;
     rig.contacts.save(out);
     return out.bytes();
@@ -103,7 +104,7 @@ TEST(ContactSnapshot, ContinuesWithTheSameBits) {
     Kneading live = kneaded(steps), restored;
     restored.rig.nodes.positions = live.rig.nodes.positions;
     restored.rig.nodes.velocities = live.rig.nodes.velocities;
-    const std::vector<std::uint8_t> bytes = live.saved();
+    const Vector<std::uint8_t> bytes = live.saved();
     restored.load(bytes);
     EXPECT_EQ(restored.saved(), bytes);
     EXPECT_EQ(live.rig.contacts.jumped(0), jumped);
@@ -132,7 +133,7 @@ TEST(ContactSnapshot, RestoredToolStandsStillUntilItIsMoved) {
 }
 
 TEST(ContactSnapshot, EveryTruncationIsCorrupt) {
-  const std::vector<std::uint8_t> bytes = kneaded(200).saved();
+  const Vector<std::uint8_t> bytes = kneaded(200).saved();
   ASSERT_GT(bytes.size(), 1000u);
   EXPECT_EQ(code_of_load(bytes), std::nullopt);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -147,16 +148,16 @@ constexpr std::size_t kStateAt = 8, kPointAt = 9 + 8, kNormalAt = kPointAt + 3 *
                       kFaceAt = kWallAt + 4, kAnchorAt = kFaceAt + 4, kContactBytes = kAnchorAt + 6 * 8;
 
 template <class T>
-void put_at(std::vector<std::uint8_t>& bytes, std::size_t offset, T value) {
+void put_at(Vector<std::uint8_t>& bytes, std::size_t offset, T value) {
   ASSERT_LE(offset + sizeof value, bytes.size());
   std::memcpy(bytes.data() + offset, &value, sizeof value);
 }
 
 TEST(ContactSnapshot, ImpossibleValuesAreCorrupt) {
-  const std::vector<std::uint8_t> good = kneaded(200).saved();
+  const Vector<std::uint8_t> good = kneaded(200).saved();
   const double nan = std::nan("");
   const auto damaged = [&](std::size_t offset, auto value) {
-    std::vector<std::uint8_t> bytes = good;
+    Vector<std::uint8_t> bytes = good;
     put_at(bytes, offset, value);
     return code_of_load(bytes);
   };
@@ -179,7 +180,7 @@ TEST(ContactSnapshot, ImpossibleValuesAreCorrupt) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(damaged(kFirstContact + kAnchorAt + 8 * k, nan), Code::corrupt) << k;
   EXPECT_EQ(damaged(kFirstContact + kAnchorAt + 24, 1.5), Code::corrupt) << "normal in the tool's frame";
   for (const std::uint32_t wall : {1u, 2u}) {
-    std::vector<std::uint8_t> bytes = good;
+    Vector<std::uint8_t> bytes = good;
     put_at(bytes, kFirstContact + 4, kWorldHolder), put_at(bytes, kFirstContact + kWallAt, wall);
     EXPECT_EQ(code_of_load(bytes), wall == 2 ? std::optional(Code::corrupt) : std::nullopt);
   }
@@ -191,11 +192,11 @@ TEST(ContactSnapshot, ImpossibleValuesAreCorrupt) {
 // Whatever byte is wrong, loading answers or the steps that follow keep their promises.
 TEST(ContactSnapshot, FlippedBytesAreRefusedOrHarmless) {
   const Kneading live = kneaded(200);
-  const std::vector<std::uint8_t> good = live.saved();
+  const Vector<std::uint8_t> good = live.saved();
   Random random(42);
   int accepted = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    std::vector<std::uint8_t> bytes = good;
+    Vector<std::uint8_t> bytes = good;
     bytes[random.below(bytes.size())] ^= static_cast<std::uint8_t>(1u << random.below(8));
     Kneading damaged = live;
     ByteReader in(bytes, "snapshot");
@@ -209,7 +210,7 @@ TEST(ContactSnapshot, FlippedBytesAreRefusedOrHarmless) {
     for (int i = 200; i < 203; ++i)
       damaged.rig.contacts.find(0, damaged.rig.nodes), damaged.rig.contacts.drop_released();
     ASSERT_EQ(allocations.count(), 0u);
-    std::vector<bool> seen(damaged.rig.nodes.positions.size());
+    Vector<bool> seen(damaged.rig.nodes.positions.size());
     for (const NodeConstraint& c : damaged.rig.contacts.constraints()) {
       ASSERT_FALSE(seen[c.node]);
       seen[c.node] = true;
@@ -222,13 +223,13 @@ TEST(ContactSnapshot, FlippedBytesAreRefusedOrHarmless) {
 // A snapshot is restored into a copy, whose vectors have lost their reserve.
 TEST(ContactSteps, DoNotAllocateAfterARestoreIntoACopy) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "malloc is not counted in this build";
-  const std::vector<std::uint8_t> bytes = kneaded(10).saved();
+  const Vector<std::uint8_t> bytes = kneaded(10).saved();
   const Kneading original;
   Kneading copy = original;
   copy.load(bytes);
   std::size_t contacts = 0;
   for (int i = 10; i < 200; ++i) {
-    const std::vector<Pose> poses = Kneading::poses(i);
+    const Vector<Pose> poses = Kneading::poses(i);
     const AllocationCounter allocations;
     copy.rig.touch(poses);
     copy.rig.decide(ContactState::stick);
@@ -243,13 +244,13 @@ TEST(ContactSteps, DoNotAllocate) {
   {
     const AllocationCounter allocations;
     volatile std::size_t size = 100;
-    const std::vector<int> some(size);
+    const Vector<int> some(size);
     ASSERT_EQ(allocations.count(), 1u) << "the counter itself";
   }
   Kneading kneading;
   std::size_t contacts = 0;
   for (int i = 0; i < 500; ++i) {
-    const std::vector<Pose> poses = Kneading::poses(i);
+    const Vector<Pose> poses = Kneading::poses(i);
     Random dice(i);
     const AllocationCounter allocations;
     kneading.rig.touch(poses);

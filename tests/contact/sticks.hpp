@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "crumble/geometry/pose.hpp"
@@ -18,7 +18,7 @@ struct Stick {
   std::uint32_t sides;  // 0 for a bar
 };
 
-inline std::vector<Stick> paper_sticks() {
+inline Vector<Stick> paper_sticks() {
   return {{"round_8mm", make_round_stick(0.004, 0.05, 16), {0.008, 0.008, 0.05}, 16},
           {"bar_6x6mm", make_bar({0.006, 0.006, 0.05}), {0.006, 0.006, 0.05}, 0},
           {"bar_3x10mm", make_bar({0.003, 0.01, 0.05}), {0.003, 0.01, 0.05}, 0},

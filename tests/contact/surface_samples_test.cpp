@@ -7,6 +7,7 @@
 #include <set>
 
 #include "contact/contact_rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 
 namespace crumble {
@@ -26,8 +27,8 @@ std::set<Triangle> turned(const Triangle& t) {
   return {t, {t[1], t[2], t[0]}, {t[2], t[0], t[1]}};
 }
 
-std::vector<std::uint32_t> all_nodes(const TetMesh& mesh) {
-  std::vector<std::uint32_t> nodes(mesh.node_count());
+Vector<std::uint32_t> all_nodes(const TetMesh& mesh) {
+  Vector<std::uint32_t> nodes(mesh.node_count());
   for (std::uint32_t i = 0; i < nodes.size(); ++i) nodes[i] = i;
   return nodes;
 }
@@ -59,16 +60,16 @@ TEST(SurfaceSamples, OpenFacesFollowTheCuts) {
   const TetMesh mesh = block();
   SurfaceSamples surface(mesh);
   Random random(8);
-  std::vector<bool> cut(mesh.springs.size());
+  Vector<bool> cut(mesh.springs.size());
   std::size_t seen_inside = 0;
   for (int round = 0; round < 60; ++round) {
-    std::vector<std::uint32_t> cuts;
+    Vector<std::uint32_t> cuts;
     for (int k = 0; k < 5; ++k) cuts.push_back(static_cast<std::uint32_t>(random.below(cut.size())));
     for (const std::uint32_t s : cuts) cut[s] = true;
     surface.note_cut(cuts);
 
     struct Sides {
-      std::vector<Triangle> of_whole, of_broken;  // outward of their tetrahedra
+      Vector<Triangle> of_whole, of_broken;  // outward of their tetrahedra
       bool torn = false;
     };
     std::map<Triangle, Sides> expected;
@@ -117,7 +118,7 @@ struct NeedleRig {
   NodeArrays nodes{mesh.positions};
   Contacts contacts{{{make_round_stick(0.0005, 0.02, 16), kPaperFriction}},
                     {},
-                    std::vector<std::uint8_t>(mesh.node_count()),
+                    Vector<std::uint8_t>(mesh.node_count()),
                     ContactRule::nearest_surface,
                     {},
                     SurfaceSamples(mesh)};
@@ -162,7 +163,7 @@ TEST(ThinTool, StickingCornersKeepTheirPlacesInItsFrame) {
   ASSERT_GE(rig.contacts.constraints().size(), 2u);
   for (NodeConstraint& c : rig.contacts.constraints()) c.state = ContactState::stick;
   rig.contacts.drop_released();
-  const std::vector<NodeConstraint> first(rig.contacts.constraints().begin(), rig.contacts.constraints().end());
+  const Vector<NodeConstraint> first(rig.contacts.constraints().begin(), rig.contacts.constraints().end());
   for (int step = 1; step <= 100; ++step) {
     rig.touch({0.0013 + 1e-6 * step, 0.01198 - 1e-5 * step, 0.0007});
     for (const NodeConstraint& c : first) {
@@ -188,7 +189,7 @@ TEST(ThinTool, LetsATornFaceGoBackBitByBit) {
   const std::size_t count = rig.contacts.constraints().size();
   ASSERT_GE(count, 2u);
   for (NodeConstraint& c : rig.contacts.constraints()) c.state = ContactState::stick;
-  std::vector<std::uint32_t> all(rig.mesh.springs.size());
+  Vector<std::uint32_t> all(rig.mesh.springs.size());
   for (std::uint32_t s = 0; s < all.size(); ++s) all[s] = s;
   rig.contacts.note_cut(all);
   const VecArray before = rig.nodes.positions;
@@ -224,7 +225,7 @@ TEST(ThinTool, ContinuesFromASnapshotWithTheSameBits) {
       ASSERT_EQ(live.nodes.positions[i], restored.nodes.positions[i]) << step;
     }
   }
-  std::vector<std::uint8_t> bytes = out.bytes();
+  Vector<std::uint8_t> bytes = out.bytes();
   bytes[57 + 8 + 3] = 2;  // of a spring
   ByteReader damaged(bytes, "snapshot");
   EXPECT_THROW(restored.contacts.load(damaged), Error);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/tool_kinds.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -51,7 +52,7 @@ TEST(Sweep, NoNodePassesThroughAToolAtTenMetresAndFiftyRadiansPerSecond) {
     const bool costly = !kind.convex || kind.name == "ellipsoid";  // to ask for distances
     for (int trial = 0; trial < (costly ? 4 : 40); ++trial) {
       const Pose from = random_pose(random), to = fast_move(kind.tool, from, random);
-      std::vector<Vec3> nodes;
+      Vector<Vec3> nodes;
       while (nodes.size() < 60) {  // on its way, and not inside it at first
         const Vec3 local = 0.01 * random_vector(random);
         if (kind.tool.shape->nearest(local, 0).signed_distance > 0) continue;
@@ -80,7 +81,7 @@ TEST(Sweep, ALongBoardThatTurnsAboutItsEndPushesWhatIsOnItsWayAhead) {
   for (const double thickness : {0.008, 0.003, 0.001}) {
     Tool tool = bar(0.05, thickness, 0.03);
     tool.offset.position = {0.025, 0, 0};
-    std::vector<Vec3> nodes;
+    Vector<Vec3> nodes;
     for (int i = 0; i < 30; ++i) {
       const double radius = 0.008 + 0.0013 * i, angle = 0.6 + 0.02 * i;
       nodes.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0001 * i});

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "contact/contact_rig.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
 #include "crumble/geometry/support_solid.hpp"
 #include "crumble/geometry/tool_solids.hpp"
@@ -26,7 +26,7 @@ inline void ellipsoid_support(void*, const double d[3], double point[3]) {
   for (int k = 0; k < 3; ++k) point[k] = axes[k] * axes[k] * d[k] / std::sqrt(squares);
 }
 
-inline std::vector<ToolKind> tool_kinds() {
+inline Vector<ToolKind> tool_kinds() {
   const auto tool = [](Solid shape) { return Tool{std::move(shape), kPaperFriction}; };
   TriangleMesh corner = make_l_shape();
   Vec3 low = corner.vertices[0], high = low;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/contacts.hpp"
 
 namespace crumble {
@@ -17,7 +18,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The code and, in the text, all of `words`.
-void expect_error(const std::function<void()>& call, Code code, const std::vector<std::string>& words) {
+void expect_error(const std::function<void()>& call, Code code, const Vector<std::string>& words) {
   try {
     call();
     ADD_FAILURE() << "accepted, although " << words.front() << " is wrong";
@@ -28,10 +29,10 @@ void expect_error(const std::function<void()>& call, Code code, const std::vecto
   }
 }
 
-void expect_friction_error(const Friction& friction, Code code, const std::vector<std::string>& words) {
+void expect_friction_error(const Friction& friction, Code code, const Vector<std::string>& words) {
   expect_error([&] { check(friction); }, code, words);
   expect_error([&] { check(Wall{{{0, 1, 0}, 0}, friction}); }, code, words);
-  const std::vector<std::uint8_t> none;
+  const Vector<std::uint8_t> none;
   expect_error(
       [&] {
         Contacts({{make_bar({1, 1, 1}), friction}}, {}, none, ContactRule::nearest_surface);
@@ -57,8 +58,7 @@ TEST(ToolInput, BadFrictionNamesItsFieldAndValue) {
 TEST(ToolInput, BadWallNamesItsField) {
   const Friction friction{3, 1.5};
   EXPECT_NO_THROW(check(Wall{{{0, 0.6, 0.8}, -2}, friction}));
-  const auto expect_wall_error = [&](const Vec3& normal, double offset, Code code,
-                                     const std::vector<std::string>& words) {
+  const auto expect_wall_error = [&](const Vec3& normal, double offset, Code code, const Vector<std::string>& words) {
     expect_error([&] { check(Wall{{normal, offset}, friction}); }, code, words);
   };
   expect_wall_error({0, 1, 0}, kNan, Code::invalid_value, {"wall.offset", "nan"});
@@ -71,7 +71,7 @@ TEST(ToolInput, BadWallNamesItsField) {
 }
 
 TEST(ToolInput, ToolWithoutFacesIsRefused) {
-  const std::vector<std::uint8_t> none;
+  const Vector<std::uint8_t> none;
   expect_error([&] { Contacts({Tool{}}, {}, none, ContactRule::nearest_surface); }, Code::empty, {"tool.shape"});
 }
 

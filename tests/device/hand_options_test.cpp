@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/hand.hpp"
 #include "device/samples.hpp"
 
@@ -86,7 +86,7 @@ TEST(HandOptions, RefusesBadOptionsByName) {
 
 TEST(HandOptions, RefusesBadPointsByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto expect = [](const std::vector<HandPoint>& points, Code code, const std::string& text) {
+  const auto expect = [](const Vector<HandPoint>& points, Code code, const std::string& text) {
     refuse([&](auto& o) { o.points = points; }, code, text);
   };
   expect({}, Code::empty, "hand.points");

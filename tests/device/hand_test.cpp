@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "device/samples.hpp"
 
 namespace crumble {
@@ -235,7 +235,7 @@ TEST(Hand, DelayShiftsAMotionAndNothingElse) {
     SimulatedHand prompt(options, kTick);
     options.delay = delay;
     SimulatedHand late(options, kTick);
-    std::vector<Vec3> seen;
+    Vector<Vec3> seen;
     for (std::uint32_t k = 0; k < 500; ++k) {
       seen.push_back(next(prompt).pose.position);
       const Vec3 told = next(late).pose.position;
@@ -285,7 +285,7 @@ TEST(Hand, GivesTheSameBitsInTwoRuns) {
     options.points = {{.time = 0.1, .move = {0.01, 0.02, 0.03}}, {.time = 0.7, .move = {0, 0, -0.01}}};
     options.friction = 0.05, options.delay = 2;
     SimulatedHand hand(options, kTick);
-    std::vector<std::array<std::uint64_t, 16>> out;
+    Vector<std::array<std::uint64_t, 16>> out;
     for (int k = 0; k < 1000; ++k) {
       out.push_back(bits(next(hand)));
       hand.write(random_vec(random, 2), Vec3::Zero());

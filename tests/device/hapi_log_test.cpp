@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/replay.hpp"
 #include "device/samples.hpp"
 
@@ -39,7 +40,7 @@ TEST(HapiLog, ReadsTheExampleOfItsDocumentation) {
 // would be seen if they were taken for something else.
 TEST(HapiLog, ReadsEveryColumnInAnyOrder) {
   const Trajectory motion = random_trajectory(61, 50);
-  std::vector<std::pair<std::string, std::function<std::string(const TrajectoryRow&)>>> columns;
+  Vector<std::pair<std::string, std::function<std::string(const TrajectoryRow&)>>> columns;
   const auto numbers = [](std::initializer_list<double> values) {
     std::string text;
     for (const double value : values) {

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "device/samples.hpp"
 
 namespace crumble {
 namespace {
 
-Trajectory from_rows(std::vector<std::pair<double, Vec3>> rows) {
+Trajectory from_rows(Vector<std::pair<double, Vec3>> rows) {
   Trajectory out;
   for (const auto& [time, position] : rows) out.rows.push_back({.time = time, .pose = {position, Quat::Identity()}});
   return out;
@@ -56,7 +57,7 @@ TEST(PoseCurve, IsMonotoneBetweenRows) {
 TEST(PoseCurve, NeverMovesAgainstTheRowsNotEvenAtTheEnds) {
   Random random(7);
   for (int k = 0; k < 2000; ++k) {
-    std::vector<std::pair<double, Vec3>> rows;
+    Vector<std::pair<double, Vec3>> rows;
     double time = 0;
     for (int i = 0; i < 3; ++i, time += random.uniform(0.001, 0.1)) rows.push_back({time, random_vec(random, 0.1)});
     if (k % 2) rows[1].second = rows[0].second + 0.01 * random_vec(random, 0.1);
@@ -119,7 +120,7 @@ TEST(PoseCurve, VelocitiesAreTheDerivatives) {
 TEST(PoseCurve, ReproducesAStraightLine) {
   const Vec3 start(0.1, 0.2, 0.3), velocity(0.05, -0.1, 0);
   Random random(6);
-  std::vector<std::pair<double, Vec3>> rows;
+  Vector<std::pair<double, Vec3>> rows;
   for (double t = 0; t < 1; t += random.uniform(0.01, 0.1)) rows.push_back({t, start + t * velocity});
   for (const std::size_t count : {std::size_t{2}, std::size_t{3}, rows.size()}) {
     const PoseCurve curve(from_rows({rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count)}));
@@ -133,7 +134,7 @@ TEST(PoseCurve, ReproducesAStraightLine) {
 // Against y = t^3 on a fine and a finer grid: the error of a monotone stretch falls as h^3 or faster.
 TEST(PoseCurve, ConvergesOnASmoothMotion) {
   const auto worst = [](int n) {
-    std::vector<std::pair<double, Vec3>> rows;
+    Vector<std::pair<double, Vec3>> rows;
     for (int i = 0; i <= n; ++i) {
       const double t = 1 + 1.0 * i / n;
       rows.push_back({t, {t * t * t, 0, 0}});

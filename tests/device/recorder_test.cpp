@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/replay.hpp"
 #include "crumble/device/scripted.hpp"
 #include "device/samples.hpp"
@@ -12,7 +13,7 @@ namespace {
 /// Hands out the given samples, then says lost.
 class Scripted final : public Device {
  public:
-  explicit Scripted(std::vector<std::pair<ReadStatus, double>> script) : script_(std::move(script)) {
+  explicit Scripted(Vector<std::pair<ReadStatus, double>> script) : script_(std::move(script)) {
     info_.name = "two\nlines";
   }
   const DeviceInfo& info() const noexcept override { return info_; }
@@ -28,7 +29,7 @@ class Scripted final : public Device {
 
  private:
   DeviceInfo info_;
-  std::vector<std::pair<ReadStatus, double>> script_;
+  Vector<std::pair<ReadStatus, double>> script_;
   std::size_t next_ = 0;
 };
 
@@ -36,7 +37,7 @@ TEST(Recorder, WhatWasRecordedPlaysBackTheSame) {
   Trajectory motion = random_trajectory(31, 60);
   Recorder recorder(open_replay(motion, {}, 0.001), 10000);
   EXPECT_EQ(recorder.info().kind, DeviceKind::replay);
-  std::vector<DeviceSample> live;
+  Vector<DeviceSample> live;
   DeviceSample sample;
   while (recorder.read(sample) == ReadStatus::ok) {
     live.push_back(sample);
@@ -74,8 +75,8 @@ TEST(Recorder, CountsWhatItCannotKeep) {
 
 TEST(Recorder, KeepsOnlyNewSamplesInOrder) {
   using enum ReadStatus;
-  auto device = std::make_unique<Scripted>(std::vector<std::pair<ReadStatus, double>>{
-      {ok, 1}, {no_new_sample, 2}, {ok, 1}, {ok, 0.5}, {ok, 2}, {finished, 3}});
+  auto device = std::make_unique<Scripted>(
+      Vector<std::pair<ReadStatus, double>>{{ok, 1}, {no_new_sample, 2}, {ok, 1}, {ok, 0.5}, {ok, 2}, {finished, 3}});
   Scripted& inner = *device;
   Recorder recorder(std::move(device), 100);
   DeviceSample sample;

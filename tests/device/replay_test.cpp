@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/pose_curve.hpp"
 #include "crumble/device/scripted.hpp"
 #include "device/samples.hpp"
@@ -15,8 +16,8 @@ namespace {
 
 const std::string kTrajectories = std::string(CRUMBLE_SOURCE_DIR) + "/examples/trajectories/";
 
-std::vector<DeviceSample> read_all(Device& device, std::size_t most = 100000) {
-  std::vector<DeviceSample> samples;
+Vector<DeviceSample> read_all(Device& device, std::size_t most = 100000) {
+  Vector<DeviceSample> samples;
   DeviceSample sample;
   while (samples.size() < most && device.read(sample) == ReadStatus::ok) samples.push_back(sample);
   return samples;
@@ -198,7 +199,7 @@ TEST(Examples, TouchMotionIsTheRecordedMotion) {
   EXPECT_EQ(motion.rows[3].pose.position, Vec3(0, -0.065510712, -0.088114197));
   EXPECT_EQ(motion.rows.back().time, 27.419999);
   Vec3 low = motion.rows[0].pose.position, high = low;
-  std::vector<double> moving;  // mm/s, the rests in the inkwell left out
+  Vector<double> moving;  // mm/s, the rests in the inkwell left out
   for (std::size_t i = 1; i < motion.rows.size(); ++i) {
     const auto &a = motion.rows[i - 1], &b = motion.rows[i];
     for (int c = 0; c < 3; ++c) {

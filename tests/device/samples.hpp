@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/device/device.hpp"
 #include "crumble/device/trajectory.hpp"
@@ -38,8 +38,8 @@ inline std::array<std::uint64_t, 16> bits(const DeviceSample& s) {
 }
 
 /// The next `n` samples, whatever their status.
-inline std::vector<DeviceSample> read_some(Device& device, std::size_t n) {
-  std::vector<DeviceSample> samples(n);
+inline Vector<DeviceSample> read_some(Device& device, std::size_t n) {
+  Vector<DeviceSample> samples(n);
   for (DeviceSample& sample : samples) static_cast<void>(device.read(sample));
   return samples;
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "device/samples.hpp"
 
 namespace crumble {
@@ -137,7 +138,7 @@ TEST(Path, TellsHowFastItTurns) {
 
 TEST(Path, RefusesBadPointsByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto expect = [](std::vector<PathPoint> points, Code code, const std::string& field) {
+  const auto expect = [](Vector<PathPoint> points, Code code, const std::string& field) {
     const Error error = error_of([&] { open_path({.points = std::move(points)}, 1e-3); });
     EXPECT_EQ(error.code(), code) << error.what();
     EXPECT_TRUE(mentions(error, field)) << error.what();

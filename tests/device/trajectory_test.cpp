@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "device/samples.hpp"
 
 namespace crumble {
@@ -89,7 +90,7 @@ TEST(Trajectory, ReadsWhatItsReferenceShows) {
   const Trajectory t = parse_trajectory(
       "# crumble-traj 1\r\n# device: a : b \n#tight\n#\nbuttons,pz,py,px,t\n3,0.3,-2e-1,.1,-1\n0,3,2,1,0\n# end rows=2",
       "x");
-  EXPECT_EQ(t.header, (std::vector<std::string>{"device: a : b ", "tight", ""}));
+  EXPECT_EQ(t.header, (Vector<std::string>{"device: a : b ", "tight", ""}));
   EXPECT_EQ(t.value_of("device"), "a : b");
   EXPECT_EQ(t.value_of("dev"), "");
   EXPECT_EQ(t.columns, quantity::kPosition | quantity::kButtons);
@@ -202,7 +203,7 @@ TEST(Trajectory, RefusesEveryMalformedTextWithCodeAndPlace) {
 TEST(Trajectory, ReadsLongHeaderLines) {
   const std::string line(1'000'000, 'x');
   const Trajectory t = parse_trajectory("# crumble-traj 1\n# " + line + "\nt,px,py,pz\n0,1,2,3\n# end rows=1", "x");
-  EXPECT_EQ(t.header, std::vector<std::string>{line});
+  EXPECT_EQ(t.header, Vector<std::string>{line});
 }
 
 /// Reads `text`; whatever it is, it is valid or an Error that says what and where. Returns whether it was valid.
@@ -244,7 +245,7 @@ TEST(Trajectory, SurvivesEveryByteChanged) {
 // Damaged bytes end in an Error or in a trajectory that is valid: nothing else leaves the parser.
 TEST(Trajectory, SurvivesRandomDamage) {
   const std::string text = format_trajectory(random_trajectory(16, 6));
-  const std::vector<std::string> words = {
+  const Vector<std::string> words = {
       "\n",  "\r",    "\r\n", ",",    ",,",         "# ",           "# end rows=",
       "nan", "1e999", "inf",  "-0x1", "4294967296", "\xef\xbb\xbf", std::string(1, '\0')};
   Random random(17);

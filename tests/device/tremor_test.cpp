@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/device/poke.hpp"
 #include "crumble/device/scripted.hpp"
 #include "device/samples.hpp"
@@ -37,9 +38,9 @@ TEST(Tremor, HasTheRootMeanSquareThatWasAskedFor) {
 }
 
 /// Power of x(t) at each multiple of 1 / (n * tick) Hz, by the sum of the definition, through a Hann window.
-std::vector<double> spectrum(const std::vector<double>& x, std::size_t bins) {
+Vector<double> spectrum(const Vector<double>& x, std::size_t bins) {
   const double n = static_cast<double>(x.size());
-  std::vector<double> power(bins);
+  Vector<double> power(bins);
   for (std::size_t bin = 0; bin < bins; ++bin) {
     double re = 0, im = 0;
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -58,9 +59,9 @@ TEST(Tremor, HasOneWaveInEachEighthOfItsBand) {
   read_some(*device, 50);
   const auto samples = read_some(*device, 3200);  // 64 s: bins of 1/64 Hz up to 25
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> x;
+    Vector<double> x;
     for (const DeviceSample& sample : samples) x.push_back(sample.pose.position[axis] - kStart[axis]);
-    const std::vector<double> power = spectrum(x, 1600);
+    const Vector<double> power = spectrum(x, 1600);
     double all = 0;
     for (const double p : power) all += p;
     for (std::size_t eighth = 0; eighth < 8; ++eighth) {
@@ -152,7 +153,7 @@ class LateDevice final : public Device {
 // After half a year it trembles as on the first day.
 TEST(Tremor, RunsForMonths) {
   const auto device = add_tremor(std::make_unique<LateDevice>(1.5e7), kPlain);
-  std::vector<DeviceSample> samples;
+  Vector<DeviceSample> samples;
   DeviceSample sample;
   for (int k = 0; k < 3000; ++k) {
     if (device->read(sample) == ReadStatus::ok) samples.push_back(sample);

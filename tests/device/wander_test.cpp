@@ -10,6 +10,7 @@
 #include <set>
 
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "device/samples.hpp"
 
 namespace crumble {
@@ -67,7 +68,7 @@ TEST(Wander, MovesAtSpeedsInItsRangeAndRestsBetween) {
   options.max_turn = 0;
   const auto samples = read_some(*open_wander(options, kTick), 200'000);
   const double diagonal = norm(kPlain.high - kPlain.low);
-  std::vector<double> speeds;
+  Vector<double> speeds;
   double longest_rest = 0;
   for (std::size_t k = 1; k < samples.size();) {
     const std::size_t begin = k;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/cut.hpp"
 #include "states.hpp"
 #include "support/allocation_counter.hpp"
@@ -19,10 +20,10 @@ TEST(Allocation, NoneAfterConstruction) {
   const TetMesh mesh = make_lattice_box({0.03, 0.03, 0.02}, 0.005);
   const VecArray positions(mesh.positions);
   const std::size_t spring_count = mesh.springs.size();
-  const std::vector<std::uint32_t> overlong{1, 4, 5, 200};
-  std::vector<std::uint32_t> newly_cut(spring_count);
-  std::vector<double> masses(mesh.node_count(), 1e-5);
-  std::vector<Fragment> fragments(mesh.node_count());
+  const Vector<std::uint32_t> overlong{1, 4, 5, 200};
+  Vector<std::uint32_t> newly_cut(spring_count);
+  Vector<double> masses(mesh.node_count(), 1e-5);
+  Vector<Fragment> fragments(mesh.node_count());
   FragmentLabeler labeler(mesh.node_count(), mesh.springs);
   std::array<SurfaceExtractor, 3> surfaces{SurfaceExtractor(mesh), SurfaceExtractor(mesh, {SurfaceMode::fragments}),
                                            SurfaceExtractor(mesh, {SurfaceMode::paper})};

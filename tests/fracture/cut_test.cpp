@@ -3,15 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
-using Flags = std::vector<std::uint8_t>;
+using Ids = Vector<std::uint32_t>;
+using Flags = Vector<std::uint8_t>;
 
 Ids cut(const Ids& overlong, Flags& intact) {
   Ids newly_cut(overlong.size());

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "crumble/base/memory.hpp"
 #include "tracked.hpp"
 
 namespace crumble {
@@ -18,7 +19,7 @@ TEST(FragmentTrackerState, GoesOnFromASnapshotBitForBit) {
   Random random(54);
   const TetMesh& body = large_box();
   FragmentTracker tracker(body.node_count(), body.springs);
-  std::vector<FragmentTracker> twins;
+  Vector<FragmentTracker> twins;
   for (std::uint64_t step = 0; step < 24; ++step) {
     Ids cuts;
     if (step % 4 < 3) cuts = springs_across(body, static_cast<int>(step % 3), random.uniform(-0.029, 0.029));
@@ -65,7 +66,7 @@ TEST(FragmentTrackerState, CopiesAreIndependent) {
 }
 
 // What load() accepts must be as good as a tracker that was never saved.
-void expect_refused_or_sound(const TetMesh& body, const std::vector<std::uint8_t>& bytes) {
+void expect_refused_or_sound(const TetMesh& body, const Vector<std::uint8_t>& bytes) {
   FragmentTracker tracker(body.node_count(), body.springs);
   ByteReader in(bytes, "snapshot");
   try {
@@ -87,14 +88,14 @@ void expect_refused_or_sound(const TetMesh& body, const std::vector<std::uint8_t
 // Every byte of the head, of the rest every `stride`th.
 void expect_damage_is_found(const TetMesh& body, const FragmentTracker& tracker, std::size_t stride) {
   Random random(56);
-  const std::vector<std::uint8_t> good = saved(tracker);
+  const Vector<std::uint8_t> good = saved(tracker);
   for (std::size_t i = 0; i < good.size(); i += i < 128 ? 1 : stride) {
-    std::vector<std::uint8_t> bad = good;
+    Vector<std::uint8_t> bad = good;
     bad[i] = static_cast<std::uint8_t>(bad[i] ^ (1 + random.below(255)));
     ASSERT_NO_FATAL_FAILURE(expect_refused_or_sound(body, bad)) << "byte " << i;
   }
   for (std::size_t size = 0; size < good.size(); size += 1 + random.below(good.size() / 300)) {
-    const std::vector<std::uint8_t> bad(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    const Vector<std::uint8_t> bad(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
     FragmentTracker other(body.node_count(), body.springs);
     ByteReader in(bad, "snapshot");
     ASSERT_THROW(other.load(in), Error) << "first " << size << " bytes";
@@ -104,7 +105,7 @@ void expect_damage_is_found(const TetMesh& body, const FragmentTracker& tracker,
 TEST(FragmentTrackerState, RefusesDamagedBytes) {
   Random random(57);
   FragmentTracker tracker(small_box().node_count(), small_box().springs);
-  const std::vector<Ids> steps = random_steps(small_box(), 60, random);
+  const Vector<Ids> steps = random_steps(small_box(), 60, random);
   for (std::size_t step = 0; step < steps.size() * 9 / 10; ++step) tracker.cut(steps[step], step);
   tracker.remove(2);
   expect_damage_is_found(small_box(), tracker, 1);
@@ -122,10 +123,10 @@ struct SavedState {
   Ids log{2};
   std::uint64_t settled_end = 1, search_end = 1;
   std::uint32_t expanded = 0;
-  std::vector<FragmentRecord> records{{kNoFragment, 3, 0}, {0, 3, 4}};
+  Vector<FragmentRecord> records{{kNoFragment, 3, 0}, {0, 3, 4}};
   Ids labels{0, 0, 0, 1, 1, 1};
 
-  std::vector<std::uint8_t> bytes() const {
+  Vector<std::uint8_t> bytes() const {
     ByteWriter out;
     out.put(log), out.put(settled_end), out.put(search_end), out.put(expanded);
     out.put(std::uint64_t{records.size()});
@@ -175,7 +176,7 @@ TEST(FragmentTrackerState, RefusesWhatCannotBe) {
   };
   for (const auto& [what, state] : bad) {
     FragmentTracker other(6, chain.springs);
-    const std::vector<std::uint8_t> bytes = state.bytes();
+    const Vector<std::uint8_t> bytes = state.bytes();
     ByteReader in(bytes, "snapshot");
     try {
       other.load(in);

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "crumble/base/memory.hpp"
 #include "support/allocation_counter.hpp"
 #include "tracked.hpp"
 
@@ -50,8 +51,8 @@ class Reference {
   }
 
   Ids labels;
-  std::vector<FragmentRecord> records;
-  std::vector<FragmentSplit> splits;
+  Vector<FragmentRecord> records;
+  Vector<FragmentSplit> splits;
 
  private:
   const TetMesh* body_;
@@ -77,7 +78,7 @@ void expect_same(const FragmentTracker& tracker, const Reference& reference) {
   }
 }
 
-void expect_follows_rule(const TetMesh& body, const std::vector<Ids>& steps) {
+void expect_follows_rule(const TetMesh& body, const Vector<Ids>& steps) {
   FragmentTracker tracker(body.node_count(), body.springs);
   Reference reference(body);
   ASSERT_NO_FATAL_FAILURE(expect_same(tracker, reference));
@@ -108,7 +109,7 @@ TEST(FragmentTracker, FollowsTheRuleInEveryStepOfRandomCuts) {
 
 TEST(FragmentTracker, FollowsTheRuleOnPlanes) {
   // thirds and halves, also of what is already apart; equal halves are decided by the least node
-  std::vector<Ids> steps;
+  Vector<Ids> steps;
   for (const auto& [axis, place] : {std::pair(0, 0.005), {0, -0.006}, {1, 0.016}, {2, 0.0}, {1, 0.004}}) {
     steps.push_back(springs_across(small_box(), axis, place));
   }
@@ -126,7 +127,7 @@ TEST(FragmentTracker, FollowsTheRuleOnChainsAndSeveralBodies) {
   for (int run = 0; run < 20; ++run) {
     const TetMesh forest = make_joint({make_chain(40), make_chain(1), small_box(), make_chain(75)});
     const Ids order = random_order(forest.node_count(), random);
-    std::vector<Edge> springs;
+    Vector<Edge> springs;
     for (const auto& [a, b] : forest.springs) {
       springs.push_back({std::min(order[a], order[b]), std::max(order[a], order[b])});
     }
@@ -284,7 +285,7 @@ TEST(FragmentTracker, RemovedFragmentsStayAway) {
 TEST(FragmentTracker, TakesNoMemoryInTheStep) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
   Random random(55);
-  const std::vector<Ids> steps = random_steps(small_box(), 20, random);
+  const Vector<Ids> steps = random_steps(small_box(), 20, random);
   const FragmentTracker original(small_box().node_count(), small_box().springs);
   FragmentTracker tracker = original;  // keeps the room
   std::size_t allocations = 0;
@@ -302,7 +303,7 @@ TEST(FragmentTracker, TakesNoMemoryInTheStep) {
 }
 
 TEST(FragmentTracker, RefusesBadSprings) {
-  const std::vector<Edge> springs{{0, 1}, {1, 5}};
+  const Vector<Edge> springs{{0, 1}, {1, 5}};
   try {
     const FragmentTracker tracker(5, springs);
     FAIL() << "accepted";

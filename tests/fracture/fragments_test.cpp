@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "crumble/base/memory.hpp"
 #include "states.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -40,7 +41,7 @@ struct Labelled {
     for (std::uint32_t& label : labels) label = label % 3 == 1 ? kNoFragment : label;
   }
   TetMesh mesh;
-  std::vector<std::uint32_t> labels;
+  Vector<std::uint32_t> labels;
   std::size_t count;
 };
 
@@ -68,7 +69,7 @@ TEST(Fragments, LongChainsInAnyOrder) {
   Random random(22);
   const std::size_t count = 2000;
   const auto order = random_order(count, random);
-  std::vector<Edge> springs;
+  Vector<Edge> springs;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     springs.push_back({std::min(order[i], order[i + 1]), std::max(order[i], order[i + 1])});
   }
@@ -85,7 +86,7 @@ TEST(Fragments, LongChainsInAnyOrder) {
 TEST(Fragments, MeasuresAddUpToTheBody) {
   Random random(23);
   const TetMesh mesh = make_lattice_box({0.03, 0.03, 0.03}, 0.005);
-  std::vector<double> masses;
+  Vector<double> masses;
   VecArray positions(mesh.node_count());
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
     masses.push_back(random.uniform(1e-5, 3e-5));
@@ -94,7 +95,7 @@ TEST(Fragments, MeasuresAddUpToTheBody) {
   for (const double share : {0.0, 0.3, 0.6, 0.8, 0.9, 1.0}) {
     const Flags intact = random_flags(mesh.springs.size(), share, random);
     FragmentLabeler labeler(mesh.node_count(), mesh.springs);
-    std::vector<Fragment> fragments(labeler.label(intact));
+    Vector<Fragment> fragments(labeler.label(intact));
     measure_fragments(mesh, labeler.labels(), masses, positions, fragments);
     Fragment sum;
     for (std::uint32_t f = 0; f < fragments.size(); ++f) {
@@ -128,9 +129,9 @@ TEST(Fragments, BrokenTetrahedronIsSharedByCorners) {
   Flags intact(6, 1);
   for (std::size_t s = 0; s < 6; ++s) intact[s] = mesh.springs[s][0] != 0;
   FragmentLabeler labeler(4, mesh.springs);
-  std::vector<Fragment> fragments(labeler.label(intact));
+  Vector<Fragment> fragments(labeler.label(intact));
   ASSERT_EQ(fragments.size(), 2u);
-  measure_fragments(mesh, labeler.labels(), std::vector<double>{1, 1, 1, 1}, VecArray(mesh.positions), fragments);
+  measure_fragments(mesh, labeler.labels(), Vector<double>{1, 1, 1, 1}, VecArray(mesh.positions), fragments);
   EXPECT_NEAR(fragments[0].rest_volume, 1.0 / 24, 1e-15);
   EXPECT_NEAR(fragments[1].rest_volume, 3.0 / 24, 1e-15);
   EXPECT_EQ(fragments[0].tetrahedron_count + fragments[1].tetrahedron_count, 0u);
@@ -142,14 +143,14 @@ TEST(Fragments, InertiaOfABoxOfEqualMasses) {
   TetMesh mesh = make_lattice_box({0.03, 0.02, 0.025}, 0.005);
   const Vec3 offset(0.3, -0.2, 0.7);
   const double mass = 2e-5;
-  const std::vector<double> masses(mesh.node_count(), mass);
+  const Vector<double> masses(mesh.node_count(), mass);
   VecArray positions(mesh.node_count());
-  std::vector<std::uint32_t> one(mesh.node_count()), two(mesh.node_count());
+  Vector<std::uint32_t> one(mesh.node_count()), two(mesh.node_count());
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
     positions.set(i, mesh.positions[i] + offset);
     two[i] = mesh.positions[i].x() > -0.0025;
   }
-  std::vector<Fragment> whole(1), halves(2);
+  Vector<Fragment> whole(1), halves(2);
   measure_fragments(mesh, one, masses, positions, whole);
   measure_fragments(mesh, two, masses, positions, halves);
 
@@ -174,14 +175,14 @@ TEST(Fragments, MeasuresEqualSumsOverTheirNodes) {
   Random random(25);
   const Labelled body(0.8, true);
   const std::size_t node_count = body.mesh.node_count();
-  std::vector<double> masses;
+  Vector<double> masses;
   VecArray positions(node_count), velocities(node_count);
   for (std::size_t i = 0; i < node_count; ++i) {
     masses.push_back(random.uniform(1e-5, 3e-5));
     positions.set(i, body.mesh.positions[i] + Vec3(random.uniform(), random.uniform(), 1) * 1e-2);
     velocities.set(i, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
   }
-  std::vector<Fragment> fragments(body.count), resting(body.count);
+  Vector<Fragment> fragments(body.count), resting(body.count);
   measure_fragments(body.mesh, body.labels, masses, positions, fragments, velocities);
   measure_fragments(body.mesh, body.labels, masses, positions, resting);
   ASSERT_GT(body.count, 6u);
@@ -224,16 +225,16 @@ TEST(FragmentLists, EqualASearchThroughTheBody) {
       FragmentLists lists(body.mesh);
       EXPECT_TRUE(lists.nodes(0).empty());
       // before, another state with more fragments: nothing of it may be left
-      std::vector<std::uint32_t> alone(body.mesh.node_count());
+      Vector<std::uint32_t> alone(body.mesh.node_count());
       std::iota(alone.begin(), alone.end(), 0u);
       lists.update(alone, alone.size());
       EXPECT_EQ(lists.nodes(17).front(), 17u);
       lists.update(body.labels, body.count);
-      std::vector<Fragment> fragments(body.count);
-      measure_fragments(body.mesh, body.labels, std::vector<double>(alone.size(), 1), VecArray(body.mesh.positions),
+      Vector<Fragment> fragments(body.count);
+      measure_fragments(body.mesh, body.labels, Vector<double>(alone.size(), 1), VecArray(body.mesh.positions),
                         fragments);
       for (std::uint32_t id = 0; id < body.count; ++id) {
-        std::vector<std::uint32_t> nodes, tetrahedra;
+        Vector<std::uint32_t> nodes, tetrahedra;
         for (std::uint32_t i = 0; i < body.labels.size(); ++i) {
           if (body.labels[i] == id) nodes.push_back(i);
         }
@@ -258,9 +259,9 @@ TEST(FragmentLists, EqualASearchThroughTheBody) {
 TEST(FragmentLists, TakesNoMemory) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
   const Labelled body(0.8, true);
-  const std::vector<double> masses(body.mesh.node_count(), 1e-5);
+  const Vector<double> masses(body.mesh.node_count(), 1e-5);
   const VecArray positions(body.mesh.positions);
-  std::vector<Fragment> fragments(body.count);
+  Vector<Fragment> fragments(body.count);
   FragmentLists lists(body.mesh);
   std::size_t allocations = 0;
   {

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "crumble/base/memory.hpp"
 #include "states.hpp"
 
 namespace crumble {
@@ -34,8 +35,8 @@ std::array<std::uint8_t, 2> ends_of(VertexCode code) {
   return copy_of(code) == 0 ? std::array{a, b} : std::array{b, a};
 }
 
-std::vector<PatternTriangle> all_triangles(const MaskPatterns& patterns) {
-  std::vector<PatternTriangle> all(patterns.interior.begin(), patterns.interior.begin() + patterns.interior_count);
+Vector<PatternTriangle> all_triangles(const MaskPatterns& patterns) {
+  Vector<PatternTriangle> all(patterns.interior.begin(), patterns.interior.begin() + patterns.interior_count);
   for (std::size_t f = 0; f < 4; ++f) {
     all.insert(all.end(), patterns.skin[f].begin(), patterns.skin[f].begin() + patterns.skin_count[f]);
   }
@@ -43,14 +44,14 @@ std::vector<PatternTriangle> all_triangles(const MaskPatterns& patterns) {
 }
 
 // Maximal sets of pairwise connected corners, written out by asking every set.
-std::vector<unsigned> cliques_of(unsigned mask) {
+Vector<unsigned> cliques_of(unsigned mask) {
   std::array<unsigned, 4> joined{1, 2, 4, 8};  // bits
   for (std::size_t s = 0; s < 6; ++s) {
     if ((mask >> s & 1u) != 0) continue;
     const auto [a, b] = kTetEdges[s];
     joined[a] |= 1u << b, joined[b] |= 1u << a;
   }
-  std::vector<unsigned> cliques;
+  Vector<unsigned> cliques;
   for (unsigned set = 1; set < 16; ++set) {
     unsigned common = 15;
     for (unsigned c = 0; c < 4; ++c) common &= (set >> c & 1u) != 0 ? joined[c] : 15u;
@@ -77,7 +78,7 @@ bool is_balanced(const EdgeCounts& counts) {
 const std::array<Vec3, 4> kCorner{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
 struct Solid {
-  std::vector<PatternTriangle> triangles;
+  Vector<PatternTriangle> triangles;
   double share = 0;  // of the tetrahedron's volume
   bool closed = false;
 };
@@ -97,8 +98,8 @@ Solid solid_of(unsigned mask, unsigned clique) {
   return solid;
 }
 
-const std::map<unsigned, std::vector<double>>& expected_shares() {  // by class, in eighths, ascending
-  static const std::map<unsigned, std::vector<double>> kShares{
+const std::map<unsigned, Vector<double>>& expected_shares() {  // by class, in eighths, ascending
+  static const std::map<unsigned, Vector<double>> kShares{
       {0, {8}},        {1, {4, 4}},     {3, {2, 6}},  {7, {1, 7}},     {11, {2, 2, 2}},   {12, {2, 2, 2, 2}},
       {13, {2, 3, 3}}, {15, {1, 3, 3}}, {30, {4, 4}}, {31, {1, 1, 4}}, {63, {1, 1, 1, 1}}};
   return kShares;
@@ -113,7 +114,7 @@ double volume_share(unsigned mask) {
 TEST(PaperPatterns, SolidsAreClosedAndHaveTheirVolumes) {
   for (unsigned mask = 0; mask < kCutMaskCount; ++mask) {
     std::size_t triangles = 0;
-    std::vector<double> eighths;
+    Vector<double> eighths;
     for (const unsigned clique : cliques_of(mask)) {
       const Solid solid = solid_of(mask, clique);
       EXPECT_TRUE(solid.closed) << "mask " << mask << " clique " << clique;
@@ -155,11 +156,10 @@ TEST(PaperPatterns, NoPointIsInTwoSolids) {
 }
 
 // Facets, whichever way a four-sided one is split, as points in order from the least.
-std::vector<std::vector<int>> facets_of(const std::vector<PatternTriangle>& triangles, const auto& rename,
-                                        bool mirror) {
-  std::set<std::vector<int>> facets;
+Vector<Vector<int>> facets_of(const Vector<PatternTriangle>& triangles, const auto& rename, bool mirror) {
+  std::set<Vector<int>> facets;
   for (const auto& [vertices, owner, fourth] : triangles) {
-    std::vector<int> facet;
+    Vector<int> facet;
     for (const VertexCode code : vertices) facet.push_back(rename(code));
     if (fourth != vertices[0]) facet.push_back(rename(fourth));
     if (mirror) std::ranges::reverse(facet);
@@ -195,7 +195,7 @@ TEST(PaperPatterns, RelabellingRelabelsTheDrawing) {
 // the pair together, and the skin stays in its face.
 TEST(PaperPatterns, FourSidedFacetsArePairs) {
   for (unsigned mask = 0; mask < kCutMaskCount; ++mask) {
-    const std::vector<PatternTriangle> triangles = all_triangles(kPaperPatterns[mask]);
+    const Vector<PatternTriangle> triangles = all_triangles(kPaperPatterns[mask]);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto& [a, b, c] = triangles[t].vertices;
       if (triangles[t].fourth == a) continue;

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/fracture/fragments.hpp"
@@ -17,36 +17,36 @@
 
 namespace crumble::fracture_test {
 
-using Flags = std::vector<std::uint8_t>;  // 1 intact
+using Flags = Vector<std::uint8_t>;  // 1 intact
 
 /// Nodes renumbered: node i becomes order[i].
-inline TetMesh make_renumbered(const std::vector<Vec3>& positions, const std::vector<Tetrahedron>& tetrahedra,
-                               const std::vector<std::uint32_t>& order) {
-  std::vector<Vec3> moved(positions.size());
+inline TetMesh make_renumbered(const Vector<Vec3>& positions, const Vector<Tetrahedron>& tetrahedra,
+                               const Vector<std::uint32_t>& order) {
+  Vector<Vec3> moved(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) moved[order[i]] = positions[i];
-  std::vector<Tetrahedron> renamed = tetrahedra;
+  Vector<Tetrahedron> renamed = tetrahedra;
   for (Tetrahedron& tetrahedron : renamed) {
     for (std::uint32_t& node : tetrahedron) node = order[node];
   }
   return make_tet_mesh(moved, renamed);
 }
 
-inline std::vector<std::uint32_t> random_order(std::size_t count, Random& random) {
-  std::vector<std::uint32_t> order(count);
+inline Vector<std::uint32_t> random_order(std::size_t count, Random& random) {
+  Vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
   return order;
 }
 
-inline const std::vector<Vec3>& two_tetrahedra_points() {
-  static const std::vector<Vec3> points{{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.1}, {0.3, 0.4, 0.9}, {0.5, 0.3, -0.8}};
+inline const Vector<Vec3>& two_tetrahedra_points() {
+  static const Vector<Vec3> points{{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.1}, {0.3, 0.4, 0.9}, {0.5, 0.3, -0.8}};
   return points;
 }
 
 /// `count` tetrahedra round the edge 0-1, closed; ring nodes from 2 on, at `radius` and height 0.
-inline TetMesh make_ring(std::uint32_t count, double radius, double height, const std::vector<std::uint32_t>& order) {
-  std::vector<Vec3> points{{0, 0, -height}, {0, 0, height}};
-  std::vector<Tetrahedron> tetrahedra;
+inline TetMesh make_ring(std::uint32_t count, double radius, double height, const Vector<std::uint32_t>& order) {
+  Vector<Vec3> points{{0, 0, -height}, {0, 0, height}};
+  Vector<Tetrahedron> tetrahedra;
   for (std::uint32_t k = 0; k < count; ++k) {
     const double angle = 2 * kPi * k / count;
     points.push_back({radius * cos_exact(angle), radius * sin_exact(angle), 0});
@@ -63,18 +63,18 @@ inline Flags random_flags(std::size_t count, double cut_share, Random& random) {
 }
 
 /// Component of each node by flooding, numbered by first node met: independent of the library's union-find.
-inline std::vector<std::uint32_t> flood_labels(const TetMesh& mesh, const Flags& intact) {
+inline Vector<std::uint32_t> flood_labels(const TetMesh& mesh, const Flags& intact) {
   constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::vector<std::uint32_t>> neighbors(mesh.node_count());
+  Vector<Vector<std::uint32_t>> neighbors(mesh.node_count());
   for (std::size_t s = 0; s < mesh.springs.size(); ++s) {
     const auto [a, b] = mesh.springs[s];
     if (intact[s] != 0) neighbors[a].push_back(b), neighbors[b].push_back(a);
   }
-  std::vector<std::uint32_t> labels(mesh.node_count(), kNone);
+  Vector<std::uint32_t> labels(mesh.node_count(), kNone);
   std::uint32_t count = 0;
   for (std::uint32_t start = 0; start < mesh.node_count(); ++start) {
     if (labels[start] != kNone) continue;
-    std::vector<std::uint32_t> open{start};
+    Vector<std::uint32_t> open{start};
     labels[start] = count;
     while (!open.empty()) {
       const std::uint32_t node = open.back();
@@ -90,7 +90,7 @@ inline std::vector<std::uint32_t> flood_labels(const TetMesh& mesh, const Flags&
   return labels;
 }
 
-inline std::size_t label_count(const std::vector<std::uint32_t>& labels) {
+inline std::size_t label_count(const Vector<std::uint32_t>& labels) {
   return *std::max_element(labels.begin(), labels.end()) + 1u;
 }
 
@@ -113,7 +113,7 @@ struct Body {
   const TetMesh* mesh;
   VecArray positions;
   Flags intact;
-  std::vector<std::uint32_t> labels;
+  Vector<std::uint32_t> labels;
   double time = 0;
 };
 
@@ -128,8 +128,8 @@ inline TriangleMesh current_surface(const SurfaceExtractor& surface) {
 }
 
 /// Volume inside each connected shell of a closed surface.
-inline std::vector<double> shell_volumes(const TriangleMesh& surface) {
-  std::vector<std::uint32_t> parents(surface.vertices.size());
+inline Vector<double> shell_volumes(const TriangleMesh& surface) {
+  Vector<std::uint32_t> parents(surface.vertices.size());
   std::iota(parents.begin(), parents.end(), 0u);
   const auto root = [&](std::uint32_t v) {
     while (parents[v] != v) v = parents[v] = parents[parents[v]];
@@ -140,7 +140,7 @@ inline std::vector<double> shell_volumes(const TriangleMesh& surface) {
   for (const auto& [a, b, c] : surface.triangles) {
     volumes[root(a)] += dot(surface.vertices[a], cross(surface.vertices[b], surface.vertices[c])) / 6;
   }
-  std::vector<double> result;
+  Vector<double> result;
   for (const auto& [shell, shell_volume] : volumes) result.push_back(shell_volume);
   return result;
 }

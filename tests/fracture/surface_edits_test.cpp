@@ -7,6 +7,7 @@
 #include <set>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/masks.hpp"
 #include "states.hpp"
 
@@ -75,14 +76,14 @@ class Renderer {
   }
 
  private:
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> fragments_;
-  std::vector<bool> is_skin_;
-  std::vector<Vec3> rest_;
+  Vector<Triangle> triangles_;
+  Vector<std::uint32_t> fragments_;
+  Vector<bool> is_skin_;
+  Vector<Vec3> rest_;
 };
 
 ::testing::AssertionResult every_vertex_is_used(const SurfaceExtractor& surface) {
-  std::vector<bool> used(surface.positions().size());
+  Vector<bool> used(surface.positions().size());
   for (const Triangle& triangle : surface.triangles()) {
     for (const std::uint32_t v : triangle) {
       if (v >= used.size()) return ::testing::AssertionFailure() << "no vertex " << v;
@@ -269,7 +270,7 @@ TEST(SurfaceEdits, SkinKeepsTheCoordinatesOfItsSource) {
     return Eigen::Vector2d(40 * place.x() - 30 * place.z() + shift, 50 * place.y() + 20 * place.x() - shift)
         .cast<float>();
   };
-  std::vector<SurfaceExtractor::CornerCoordinates> given(mesh.boundary.size());
+  Vector<SurfaceExtractor::CornerCoordinates> given(mesh.boundary.size());
   for (std::size_t b = 0; b < given.size(); ++b) {
     for (std::size_t k = 0; k < 3; ++k) given[b][k] = coordinates(b, mesh.positions[mesh.boundary[b][k]]);
   }
@@ -282,7 +283,7 @@ TEST(SurfaceEdits, SkinKeepsTheCoordinatesOfItsSource) {
         body.relabel();
         surface.update(body.now());
         ASSERT_EQ(surface.skin_sources().size(), surface.skin_triangle_count());
-        std::vector<SurfaceExtractor::CornerCoordinates> spread(surface.skin_triangle_count());
+        Vector<SurfaceExtractor::CornerCoordinates> spread(surface.skin_triangle_count());
         surface.spread_over_skin(given, spread);
         for (std::size_t t = 0; t < spread.size(); ++t) {
           const std::uint32_t source = surface.skin_sources()[t];

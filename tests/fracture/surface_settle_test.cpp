@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "crumble/base/memory.hpp"
 #include "states.hpp"
 
 namespace crumble {
@@ -56,9 +57,9 @@ struct Picture {
     return Vec3::Constant(1e9);
   }
 
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> sources;
-  std::vector<Vec3> positions, rest;
+  Vector<Triangle> triangles;
+  Vector<std::uint32_t> sources;
+  Vector<Vec3> positions, rest;
 };
 
 // Greatest distance between the skin of two pictures, at points all over the later one's triangles.
@@ -165,13 +166,13 @@ TEST(SurfaceSettle, GoesToTheSettledPlaceSteadily) {
     look_long(surface, body);
     fresh.rebuild(body.now());
     look_long(fresh, body);
-    std::map<Key, std::vector<Vec3>> settled;  // copies of a site apart by nothing but their places
+    std::map<Key, Vector<Vec3>> settled;  // copies of a site apart by nothing but their places
     for (std::size_t v = 0; v < fresh.positions().size(); ++v) {
       settled[key(fresh.rest_positions()[v])].push_back(fresh.positions()[v]);
     }
     const Picture start(surface);
     constexpr int kFrames = 20;
-    std::vector<std::vector<Vec3>> path{start.positions};
+    Vector<Vector<Vec3>> path{start.positions};
     for (int frame = 1; frame <= kFrames + 1; ++frame) {
       body.time = frame * kSettle / kFrames;
       look_long(surface, body);

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/fracture/masks.hpp"
 #include "states.hpp"
@@ -77,8 +78,8 @@ Flags flags_from_bits(std::size_t count, unsigned cut_bits) {
 }
 
 TEST(Surface, LoneTetrahedronInEveryMaskAndNumbering) {
-  const std::vector<Vec3> points(two_tetrahedra_points().begin(), two_tetrahedra_points().begin() + 4);
-  std::vector<std::uint32_t> order{0, 1, 2, 3};
+  const Vector<Vec3> points(two_tetrahedra_points().begin(), two_tetrahedra_points().begin() + 4);
+  Vector<std::uint32_t> order{0, 1, 2, 3};
   do {
     const TetMesh mesh = make_renumbered(points, {{0, 1, 2, 3}}, order);
     Checker cracks(mesh, SurfaceMode::cracks), fragments(mesh, SurfaceMode::fragments);
@@ -96,8 +97,8 @@ TEST(Surface, LoneTetrahedronInEveryMaskAndNumbering) {
 
 // From every mask to every mask that can follow it.
 TEST(Surface, LoneTetrahedronInEveryTransition) {
-  const std::vector<Vec3> points(two_tetrahedra_points().begin(), two_tetrahedra_points().begin() + 4);
-  std::vector<std::uint32_t> order{0, 1, 2, 3};
+  const Vector<Vec3> points(two_tetrahedra_points().begin(), two_tetrahedra_points().begin() + 4);
+  Vector<std::uint32_t> order{0, 1, 2, 3};
   do {
     const TetMesh mesh = make_renumbered(points, {{0, 1, 2, 3}}, order);
     for (const SurfaceMode mode : kManifoldModes) {
@@ -197,7 +198,7 @@ TEST(Surface, FragmentSurfacesEncloseTheirDualCells) {
       const Body body(mesh, intact);
       ASSERT_GE(label_count(body.labels), 2u);
       surface.rebuild(body.now());
-      std::vector<double> cells(label_count(body.labels));
+      Vector<double> cells(label_count(body.labels));
       for (std::size_t i = 0; i < body.labels.size(); ++i) cells[body.labels[i]] += mesh.node_volumes[i];
       std::size_t triangle_count = 0;
       for (std::uint32_t f = 0; f < cells.size(); ++f) {

@@ -6,17 +6,17 @@
 #include <cstdint>
 #include <initializer_list>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragment_tracker.hpp"
 #include "states.hpp"
 
 namespace crumble::fracture_test {
 
-using Ids = std::vector<std::uint32_t>;
+using Ids = Vector<std::uint32_t>;
 
 /// Nodes and springs, for bodies without tetrahedra.
-inline TetMesh make_graph(std::size_t node_count, std::vector<Edge> springs) {
+inline TetMesh make_graph(std::size_t node_count, Vector<Edge> springs) {
   TetMesh graph;
   graph.positions.resize(node_count);
   graph.springs = std::move(springs);
@@ -24,7 +24,7 @@ inline TetMesh make_graph(std::size_t node_count, std::vector<Edge> springs) {
 }
 
 inline TetMesh make_chain(std::uint32_t node_count) {
-  std::vector<Edge> springs;
+  Vector<Edge> springs;
   for (std::uint32_t i = 0; i + 1 < node_count; ++i) springs.push_back({i, i + 1});
   return make_graph(node_count, springs);
 }
@@ -61,8 +61,8 @@ inline const TetMesh& large_box() {
 }
 
 /// All springs in random order, in bursts of 0 to `most`.
-inline std::vector<Ids> random_steps(const TetMesh& body, std::size_t most, Random& random) {
-  std::vector<Ids> steps;
+inline Vector<Ids> random_steps(const TetMesh& body, std::size_t most, Random& random) {
+  Vector<Ids> steps;
   const Ids order = random_order(body.springs.size(), random);
   for (std::size_t next = 0; next < order.size();) {
     const std::size_t count = std::min<std::size_t>(random.below(most + 1), order.size() - next);
@@ -79,13 +79,13 @@ inline std::uint64_t hash_of(const FragmentTracker& tracker) {
   return hash.value();
 }
 
-inline std::vector<std::uint8_t> saved(const FragmentTracker& tracker) {
+inline Vector<std::uint8_t> saved(const FragmentTracker& tracker) {
   ByteWriter out;
   tracker.save(out);
   return out.bytes();
 }
 
-inline FragmentTracker loaded(const TetMesh& body, const std::vector<std::uint8_t>& bytes) {
+inline FragmentTracker loaded(const TetMesh& body, const Vector<std::uint8_t>& bytes) {
   FragmentTracker tracker(body.node_count(), body.springs);
   tracker.cut(Ids{0, 1}, 3);  // must leave no trace
   ByteReader in(bytes, "snapshot");

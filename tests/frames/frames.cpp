@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 
 namespace crumble::frames {
@@ -30,10 +31,10 @@ double mean_spring(const TetMesh& mesh) {
 }
 
 // Cameras about the body at rest with room for what falls off.
-std::vector<ParallelCamera> make_cameras(const TetMesh& mesh, int size) {
+Vector<ParallelCamera> make_cameras(const TetMesh& mesh, int size) {
   Vec3 low = mesh.positions[0], high = low;
   for (const Vec3& p : mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  std::vector<ParallelCamera> cameras;
+  Vector<ParallelCamera> cameras;
   for (const auto& [x, y, z] : kDirections) {
     cameras.push_back(make_camera({x, y, z}, 0.5 * (low + high), 0.65 * norm(high - low), size));
   }
@@ -98,7 +99,7 @@ class Viewer {
   const Simulation& sim_;
   Options options_;
   SurfaceExtractor surface_;
-  std::vector<Silhouette> pictures_;
+  Vector<Silhouette> pictures_;
   std::array<FlickerCounter, kDirections.size()> flicker_;
   PopMeter pops_;
   double spring_;
@@ -109,12 +110,12 @@ class Viewer {
 
 std::size_t FlickerCounter::add(const Silhouette& picture) {
   const int size = picture.size();
-  std::vector<std::uint8_t> now(static_cast<std::size_t>(size) * size);
+  Vector<std::uint8_t> now(static_cast<std::size_t>(size) * size);
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * size + x; };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) now[at(x, y)] = picture.covered(x, y);
   }
-  const auto is_even = [&](const std::vector<std::uint8_t>& frame, int x, int y) {
+  const auto is_even = [&](const Vector<std::uint8_t>& frame, int x, int y) {
     for (int v = y - 1; v <= y + 1; ++v) {
       for (int u = x - 1; u <= x + 1; ++u) {
         if (frame[at(u, v)] != frame[at(x, y)]) return false;
@@ -134,7 +135,7 @@ std::size_t FlickerCounter::add(const Silhouette& picture) {
   return count;
 }
 
-double PopMeter::way_of(const Vec3& rest, const Vec3& place, const std::vector<Part>& parts) const {
+double PopMeter::way_of(const Vec3& rest, const Vec3& place, const Vector<Part>& parts) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Part& part : parts) {
     const Vec3 weights = weights_in(part.rest, rest);
@@ -146,7 +147,7 @@ double PopMeter::way_of(const Vec3& rest, const Vec3& place, const std::vector<P
 }
 
 PopMeter::Pops PopMeter::add(const SurfaceExtractor& surface, VecView nodes) {
-  std::vector<std::vector<Part>> parts(mesh_->boundary.size());
+  Vector<Vector<Part>> parts(mesh_->boundary.size());
   for (std::size_t t = 0; t < surface.skin_triangle_count(); ++t) {
     Part& part = parts[surface.skin_sources()[t]].emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {

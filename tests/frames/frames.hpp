@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "scenes/scene.hpp"
 #include "support/silhouette.hpp"
@@ -25,7 +25,7 @@ class FlickerCounter {
   std::size_t add(const Silhouette& picture);
 
  private:
-  std::vector<std::uint8_t> before_, last_;  // covered or not
+  Vector<std::uint8_t> before_, last_;  // covered or not
 };
 
 /// How far the drawn skin has moved from frame to frame, beyond its nodes.
@@ -47,11 +47,11 @@ class PopMeter {
   struct Part {
     std::array<Vec3, 3> rest, place;
   };
-  double way_of(const Vec3& rest, const Vec3& place, const std::vector<Part>& parts) const;
+  double way_of(const Vec3& rest, const Vec3& place, const Vector<Part>& parts) const;
 
   const TetMesh* mesh_;
-  std::vector<std::vector<Part>> parts_;  // per triangle of the boundary, in the frame before
-  std::vector<Vec3> nodes_;               // in the frame before
+  Vector<Vector<Part>> parts_;  // per triangle of the boundary, in the frame before
+  Vector<Vec3> nodes_;          // in the frame before
 };
 
 struct Worst {

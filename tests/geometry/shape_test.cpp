@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
 namespace {
 
-std::vector<std::unique_ptr<Shape>> shapes() {
-  std::vector<std::unique_ptr<Shape>> list;
+Vector<std::unique_ptr<Shape>> shapes() {
+  Vector<std::unique_ptr<Shape>> list;
   list.push_back(make_box({0.03, 0.01, 0.02}));
   list.push_back(make_sphere(0.02));
   list.push_back(make_cylinder(0.015, 0.03));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "geometry/direction_sphere.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 using Point2 = std::array<double, 2>;
 
-std::vector<Point2> circle(double x, double y, double radius, std::uint32_t steps) {
-  std::vector<Point2> points;
+Vector<Point2> circle(double x, double y, double radius, std::uint32_t steps) {
+  Vector<Point2> points;
   for (std::uint32_t i = 0; i < steps; ++i) {
     const double angle = 2 * M_PI * (i + 0.3) / steps;
     points.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
@@ -22,7 +23,7 @@ std::vector<Point2> circle(double x, double y, double radius, std::uint32_t step
 
 }  // namespace
 
-TriangleMesh make_prism(const std::vector<Point2>& polygon, double height) {
+TriangleMesh make_prism(const Vector<Point2>& polygon, double height) {
   TriangleMesh mesh;
   const auto n = static_cast<std::uint32_t>(polygon.size());
   for (const double z : {-0.5 * height, 0.5 * height}) {
@@ -40,9 +41,9 @@ TriangleMesh make_prism(const std::vector<Point2>& polygon, double height) {
   return mesh;
 }
 
-TriangleMesh make_revolved(const std::vector<Point2>& profile, std::uint32_t steps) {
+TriangleMesh make_revolved(const Vector<Point2>& profile, std::uint32_t steps) {
   TriangleMesh mesh;
-  std::vector<std::vector<std::uint32_t>> ring(profile.size());
+  Vector<Vector<std::uint32_t>> ring(profile.size());
   for (std::size_t i = 0; i < profile.size(); ++i) {
     for (std::uint32_t k = 0; k < steps; ++k) {
       if (k == 0 || profile[i][0] > 0) {
@@ -89,7 +90,7 @@ TriangleMesh make_cup() {
 }
 
 TriangleMesh make_gear() {
-  std::vector<Point2> polygon;
+  Vector<Point2> polygon;
   for (int i = 0; i < 48; ++i) {
     const double angle = 2 * M_PI * i / 48, radius = i % 4 < 2 ? 1 : 0.8;
     polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
@@ -105,7 +106,7 @@ TriangleMesh make_hollow_box() {
   return mesh;
 }
 
-std::vector<NamedMesh> concave_meshes() {
+Vector<NamedMesh> concave_meshes() {
   return {{"L shape", make_l_shape()}, {"torus", make_torus(1, 0.3, 24, 12)}, {"cup", make_cup()},
           {"gear", make_gear()},       {"blob", make_blob(2, 0.5, 3)},        {"hollow box", make_hollow_box()}};
 }

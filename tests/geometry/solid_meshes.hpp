@@ -3,17 +3,17 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
 namespace crumble {
 
 /// Right prism along z on a polygon (counter-clockwise) all of whose corners the origin sees.
-TriangleMesh make_prism(const std::vector<std::array<double, 2>>& polygon, double height);
+TriangleMesh make_prism(const Vector<std::array<double, 2>>& polygon, double height);
 /// A closed polygon in the half-plane (r, z), counter-clockwise, turned about z in `steps` steps; points with r = 0
 /// stay single.
-TriangleMesh make_revolved(const std::vector<std::array<double, 2>>& profile, std::uint32_t steps);
+TriangleMesh make_revolved(const Vector<std::array<double, 2>>& profile, std::uint32_t steps);
 /// A sphere of 20 * 4^levels triangles whose radius is 1 + `roughness` * noise.
 TriangleMesh make_blob(int levels, double roughness, std::uint64_t seed);
 
@@ -28,6 +28,6 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 /// One of each, none convex.
-std::vector<NamedMesh> concave_meshes();
+Vector<NamedMesh> concave_meshes();
 
 }  // namespace crumble

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -93,8 +94,8 @@ struct Case {
 };
 
 // In metres, of the size of tools.
-std::vector<Case> cases() {
-  std::vector<Case> list;
+Vector<Case> cases() {
+  Vector<Case> list;
   list.push_back({"ball", {Set::ball, {0.004, 0, 0}}, 1e-9});
   list.push_back({"box", {Set::box, {0.003, 0.005, 0.025}}, 1e-9});
   list.push_back({"ellipsoid", {Set::ellipsoid, {0.004, 0.006, 0.01}}, 1e-9});

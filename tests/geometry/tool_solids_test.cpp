@@ -12,12 +12,14 @@
 #include <functional>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
+#include "support/long_lane.hpp"
 
 namespace crumble {
 namespace {
 
-constexpr int kPoints = 100'000;
+const int kPoints = in_long_lane(100'000);
 constexpr double kExact = 1e-15;
 
 struct Flat {
@@ -31,8 +33,8 @@ struct RoundSolid {
   std::function<Flat(double)> profile;      // s in [0, 1]: from the axis to the axis
   std::function<bool(double, double)> has;  // whether (r, z) lies inside
   double half_thickness;
-  double reach;               // radius of a ball about the origin that holds it
-  std::vector<double> bends;  // s where its smooth parts begin and end
+  double reach;          // radius of a ball about the origin that holds it
+  Vector<double> bends;  // s where its smooth parts begin and end
 };
 
 RoundSolid capsule(const char* name, double radius, double length) {
@@ -66,8 +68,8 @@ RoundSolid cone(const char* name, double radius, double height) {
           {0, share, 1}};
 }
 
-std::vector<RoundSolid> round_solids() {
-  std::vector<RoundSolid> all;
+Vector<RoundSolid> round_solids() {
+  Vector<RoundSolid> all;
   all.push_back(capsule("ball", 0.004, 0));
   all.push_back(capsule("capsule", 0.003, 0.04));
   all.push_back(capsule("thin capsule", 0.0005, 0.1));

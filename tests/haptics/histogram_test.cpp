@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 
 namespace crumble {
@@ -15,7 +15,7 @@ namespace {
 TEST(Histogram, QuantilesAreThoseOfTheSortedTimes) {
   Random random(3);
   Histogram histogram;
-  std::vector<double> times;
+  Vector<double> times;
   for (int k = 0; k < 20000; ++k) {
     times.push_back(std::pow(10, random.uniform(-8, 0)));
     histogram.add(times.back());

@@ -2,8 +2,8 @@
 #include "crumble/haptics/loop.hpp"
 
 #include <algorithm>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/device/recorder.hpp"
 #include "crumble/device/replay.hpp"
@@ -175,7 +175,7 @@ TEST(Loop, TheLocalModelChangesWithoutSteps) {
   rig.let_in();
   rig.move_to(-0.003, 0.1);
   rig.tick(20);
-  std::vector<double> falls;
+  Vector<double> falls;
   for (int k = 0; k < 40; ++k) {
     const double before = rig.device.force.y();
     rig.tick();
@@ -233,7 +233,7 @@ TEST(Loop, TwoHandsHaveABodyBetweenThem) {
 
 // The same motion by the same loop: forces and states to the last bit.
 TEST(Loop, ReplayGivesTheSameBits) {
-  const auto run = [](Device& device, Recording* recording, std::vector<Vec3>& forces) {
+  const auto run = [](Device& device, Recording* recording, Vector<Vec3>& forces) {
     SimulationDef body = small_body();
     body.material.length_limit = 1.15;
     Simulation sim(body);
@@ -256,7 +256,7 @@ TEST(Loop, ReplayGivesTheSameBits) {
   path.start.position.y() = 0.002;
   path.points = {{.time = 0.7}, {.time = 1.2, .move = {0.001, -0.012, 0.001}}, {.time = 2.4, .move = {0, 0.01, 0}}};
   Recorder first(open_path(path, 1e-3), 3000);
-  std::vector<Vec3> forces, again;
+  Vector<Vec3> forces, again;
   SimulationDef body = small_body();
   body.material.length_limit = 1.15;
   const Simulation start(body);

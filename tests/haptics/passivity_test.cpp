@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/haptics/velocity_filter.hpp"
 #include "crumble/haptics/virtual_coupling.hpp"
@@ -67,7 +68,7 @@ TEST(Observer, CountsWhatTheHandDoesOnTheForce) {
   Random random(7);
   for (const int delay : {0, 1, 3}) {
     EnergyObserver observer({.delay = double(delay)});
-    std::vector<Vec3> forces, places;
+    Vector<Vec3> forces, places;
     double energy = 0, least = 0;
     for (int k = 0; k < 500; ++k) {
       places.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});

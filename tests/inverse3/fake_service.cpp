@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "crumble/base/memory.hpp"
+
 namespace crumble {
 namespace {
 
@@ -39,7 +41,7 @@ class FakeService::Server {
   }
 
   std::uint16_t port() const { return port_; }
-  std::vector<std::string> received() const {
+  Vector<std::string> received() const {
     const std::lock_guard lock(mutex_);
     return received_;
   }
@@ -115,7 +117,7 @@ class FakeService::Server {
   std::string outgoing_;
   beast::flat_buffer incoming_;
   mutable std::mutex mutex_;
-  std::vector<std::string> received_;
+  Vector<std::string> received_;
   bool saw_close_ = false;
   asio::io_context context_{1};
   Tcp::acceptor acceptor_;
@@ -128,7 +130,7 @@ FakeService::~FakeService() = default;
 std::uint16_t FakeService::port() const {
   return server_->port();
 }
-std::vector<std::string> FakeService::received() const {
+Vector<std::string> FakeService::received() const {
   return server_->received();
 }
 bool FakeService::saw_close() const {

@@ -10,7 +10,8 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
@@ -40,7 +41,7 @@ class FakeService {
 
   std::uint16_t port() const;
   /// All that clients sent, in its order.
-  std::vector<std::string> received() const;
+  Vector<std::string> received() const;
   /// Whether a client has said goodbye as it should.
   bool saw_close() const;
 

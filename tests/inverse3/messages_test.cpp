@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "device/inverse3_messages.hpp"
 #include "device/samples.hpp"
@@ -79,7 +80,7 @@ TEST(Inverse3Messages, PicksTheDeviceByItsId) {
   Inverse3State state;
   ASSERT_EQ(read_state(two, "0A11", state), MessageKind::state);
   EXPECT_DOUBLE_EQ(state.position.x(), 2e-5);
-  EXPECT_EQ(device::inverse3_ids(two), (std::vector<std::string>{"049D", "0A11"}));
+  EXPECT_EQ(device::inverse3_ids(two), (Vector<std::string>{"049D", "0A11"}));
   EXPECT_EQ(read_state(two, "FFFF", state), MessageKind::other);
   EXPECT_DOUBLE_EQ(state.position.x(), 2e-5) << "touched";
 }

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/network/solver.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -34,7 +34,7 @@ constexpr Golden kGolden[] = {
 struct Body {
   std::string name;
   SpringNetwork network;
-  std::vector<Vec3> at;
+  crumble::Vector<Vec3> at;
   int steps = 0;
 };
 
@@ -45,16 +45,16 @@ Body crystal(const std::string& name, const Vec3& size, double spacing, int step
   return {name, make_network(mesh, {}, MassRule::lumped, fixed), mesh.positions, steps};
 }
 
-std::vector<std::uint32_t> random_order(std::size_t count, Random& random) {
-  std::vector<std::uint32_t> order(count);
+crumble::Vector<std::uint32_t> random_order(std::size_t count, Random& random) {
+  crumble::Vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(i))]);
   return order;
 }
 
 template <class T>
-void reorder(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
-  const std::vector<T> old = values;
+void reorder(const crumble::Vector<std::uint32_t>& order, crumble::Vector<T>& values) {
+  const crumble::Vector<T> old = values;
   for (std::size_t i = 0; i < old.size(); ++i) values[order[i]] = old[i];
 }
 
@@ -139,11 +139,11 @@ class Ordeal {
   // A third of the nodes, five and one, but no fixed one.
   void let_loose() {
     const auto third = static_cast<std::uint32_t>(body_.at.size() / 3);
-    std::vector<std::uint32_t> nodes;
+    crumble::Vector<std::uint32_t> nodes;
     for (std::uint32_t node = 30; nodes.size() < third + 6; ++node) {
       if (!body_.network.fixed[node]) nodes.push_back(node);
     }
-    const std::vector<std::uint32_t> first{0, third, third + 5, third + 6};
+    const crumble::Vector<std::uint32_t> first{0, third, third + 5, third + 6};
     solver_->set_loose({first, nodes});
   }
 
@@ -163,7 +163,7 @@ class Ordeal {
     const Vec3 corner = body_.at[static_cast<std::size_t>(random_.below(body_.at.size()))];
     const Vec3 size = Vec3::Constant(0.004) + random_vector(random_, 0.003);
     const auto found = solver_->inside(corner - size, corner + size);
-    std::vector<std::uint32_t> nodes(found.begin(), found.end());
+    crumble::Vector<std::uint32_t> nodes(found.begin(), found.end());
     hash_.add(std::uint64_t{nodes.size()});
     for (const std::uint32_t node : nodes) hash_.add(std::uint64_t{node});
     const Vec3 normal = normalized(random_vector(random_, 1));
@@ -189,8 +189,8 @@ class Ordeal {
   const Body& body_;
   std::unique_ptr<NetworkSolver> solver_;
   VecArray external_;
-  std::vector<NodeConstraint> held_;
-  std::vector<std::uint32_t> fading_;
+  crumble::Vector<NodeConstraint> held_;
+  crumble::Vector<std::uint32_t> fading_;
   Random random_{11};
   Hash hash_;
   std::size_t cut_ = 0, held_in_all_ = 0, lost_ = 0;
@@ -211,7 +211,7 @@ std::optional<std::uint64_t> common_hash(const Body& body, Precision precision) 
   return agree ? common : std::nullopt;
 }
 
-std::vector<Body> make_bodies() {
+crumble::Vector<Body> make_bodies() {
   Random random(3);
   const Body rows = crystal("rows", {0.033, 0.03, 0.036}, 0.003, 160);
   return {rows, shuffled("shuffled", rows, random), tangle("tangle", 1500, 0.03, 160, random),
@@ -230,7 +230,7 @@ bool is_as_named(const Body& body, const LayoutReport& layout) {
 int run() {
   bool good = true;
   std::string table;
-  const std::vector<Body> bodies = make_bodies();
+  const crumble::Vector<Body> bodies = make_bodies();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     good = is_as_named(bodies[b], Ordeal(bodies[b], Precision::float32, "scalar").layout()) && good;
     const auto narrow = common_hash(bodies[b], Precision::float32), wide = common_hash(bodies[b], Precision::float64);

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bubblemesh/delaunay.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/bubblemesh/generate.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
@@ -17,18 +17,18 @@ inline Vec3 random_vector(Random& random, double size) {
   return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
 }
 
-inline std::vector<std::uint32_t> random_order(std::size_t count, Random& random) {
-  std::vector<std::uint32_t> order(count);
+inline Vector<std::uint32_t> random_order(std::size_t count, Random& random) {
+  Vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
   return order;
 }
 
 /// Node i becomes node order[i].
-inline TetMesh renumbered(const TetMesh& mesh, const std::vector<std::uint32_t>& order) {
-  std::vector<Vec3> positions(mesh.node_count());
+inline TetMesh renumbered(const TetMesh& mesh, const Vector<std::uint32_t>& order) {
+  Vector<Vec3> positions(mesh.node_count());
   for (std::size_t i = 0; i < positions.size(); ++i) positions[order[i]] = mesh.positions[i];
-  std::vector<Tetrahedron> tetrahedra = mesh.tetrahedra;
+  Vector<Tetrahedron> tetrahedra = mesh.tetrahedra;
   for (Tetrahedron& t : tetrahedra) {
     for (std::uint32_t& node : t) node = order[node];
   }
@@ -41,17 +41,17 @@ inline TetMesh shuffled(const TetMesh& mesh, Random& random) {
 
 /// Delaunay tetrahedra of random points in a cube of 30 mm: what a user might bring.
 inline TetMesh random_mesh(std::size_t points, Random& random) {
-  std::vector<Vec3> positions;
+  Vector<Vec3> positions;
   for (std::size_t i = 0; i < points; ++i) positions.push_back(random_vector(random, 0.015));
-  std::vector<Tetrahedron> good;
+  Vector<Tetrahedron> good;
   for (const Tetrahedron& t : delaunay(quantize(positions))) {  // of points in a plane there may be flat ones
     if (orient(positions[t[0]], positions[t[1]], positions[t[2]], positions[t[3]]) > 1e-12) good.push_back(t);
   }
-  std::vector<std::uint32_t> name(points, 0);
+  Vector<std::uint32_t> name(points, 0);
   for (const Tetrahedron& t : good) {
     for (const std::uint32_t node : t) name[node] = 1;
   }
-  std::vector<Vec3> kept;
+  Vector<Vec3> kept;
   for (std::size_t i = 0; i < points; ++i) {
     if (name[i] == 0) continue;
     name[i] = static_cast<std::uint32_t>(kept.size());
@@ -76,9 +76,9 @@ struct Body {
 };
 
 /// One of each kind, up to some hundreds of nodes.
-inline std::vector<Body> small_bodies() {
+inline Vector<Body> small_bodies() {
   Random random(23);
-  std::vector<Body> bodies;
+  Vector<Body> bodies;
   bodies.push_back(
       {"one tetrahedron", make_tet_mesh({{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}}, {{0, 1, 2, 3}})});
   for (const std::size_t points : {6u, 9u, 14u, 20u}) {

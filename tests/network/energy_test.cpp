@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "network/violence.hpp"
 
 namespace crumble {
@@ -24,11 +25,11 @@ Energy measure(const Violence& v, const SolverSettings& settings, NetworkSolver&
   VecArray from(nodes), velocities(nodes), to(nodes);
   solver.read_positions(0, from), solver.read_velocities(velocities);
   const double kinetic = kinetic_energy(v.network, velocities);
-  std::vector<NodeConstraint> constraints = v.constraints;
+  Vector<NodeConstraint> constraints = v.constraints;
   solver.solve(constraints);
   solver.read_positions(0, to), solver.read_velocities(velocities);
 
-  std::vector<double> stiffnesses = v.network.stiffnesses;
+  Vector<double> stiffnesses = v.network.stiffnesses;
   for (std::size_t s = 0; s < stiffnesses.size(); ++s) stiffnesses[s] *= v.shares[s];
   for (const std::uint32_t s : solver.overlong()) stiffnesses[s] *= settings.cut_share;
   double work = 0;
@@ -52,7 +53,7 @@ double certified(const SpringNetwork& network) {
 // The worst excess over `networks` networks in 20 states each.
 double worst_excess(TimeStepPolicy policy, Precision precision, int networks) {
   static const TetMesh mesh = make_lattice_box({0.02, 0.02, 0.02}, 0.01);
-  const std::vector<std::string> kernels = kernel_names();
+  const Vector<std::string> kernels = kernel_names();
   Random random(7);
   double worst = -1e300;
   for (int n = 0; n < networks; ++n) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "crumble/base/memory.hpp"
 #include "network/near_reference.hpp"
 #include "network/same_bits.hpp"
 #include "network/violence.hpp"
@@ -48,7 +49,7 @@ void cut(Violence& v, NetworkSolver& a, NetworkSolver& b) {
 }
 
 TEST(Kernels, GiveTheSameBitsAsScalar) {
-  const std::vector<std::string> kernels = kernel_names();
+  const Vector<std::string> kernels = kernel_names();
   ASSERT_EQ(kernels.front(), "scalar");
   if (kernels.size() == 1) GTEST_SKIP() << "this processor has no other kernel";
   Random random(31);
@@ -122,7 +123,7 @@ TEST(Kernels, SearchesFindTheNodesThatAreThere) {
     for (const Precision precision : kBoth) {
       Violence v(body.mesh, random, 10);
       const auto c = make_coefficients(v.network, 1e-3, TimeStepPolicy::guard);
-      std::vector<std::unique_ptr<NetworkSolver>> solvers;
+      Vector<std::unique_ptr<NetworkSolver>> solvers;
       for (const std::string& kernel : kernel_names()) {
         solvers.push_back(NetworkSolver::make(v.network, c, v.rest, settings_of(precision, kernel)));
       }
@@ -147,7 +148,7 @@ TEST(Kernels, SearchesFindTheNodesThatAreThere) {
           ASSERT_EQ(copied(solver->inside(low, high)), inside);
           ASSERT_EQ(copied(solver->behind(plane)), behind);
         }
-        std::vector<int> in(v.rest.size(), 0), back(v.rest.size(), 0);
+        Vector<int> in(v.rest.size(), 0), back(v.rest.size(), 0);
         for (const std::uint32_t node : inside) ++in[node];
         for (const std::uint32_t node : behind) ++back[node];
         const double close = 3e-7 * (0.03 + norm(away));  // rounding of float coordinates

@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 #include "network/violence.hpp"
 
@@ -46,7 +47,7 @@ void visit_lanes(const Layout& layout,
 }
 
 void expect_each_spring_once(const SpringNetwork& network, const Layout& layout) {
-  std::vector<int> lanes_seen(layout.lane_count(), 0), springs_seen(network.spring_count(), 0);
+  Vector<int> lanes_seen(layout.lane_count(), 0), springs_seen(network.spring_count(), 0);
   visit_lanes(layout, [&](std::size_t, std::uint32_t lane, Lane ends) {
     ASSERT_LT(lane, layout.lane_count());
     ++lanes_seen[lane];
@@ -110,7 +111,7 @@ void expect_partitions(const Layout& layout) {
 
 // What batches add is taken over for each group of slots that they touch, once, by the partition that owns the slot.
 void expect_groups(const Layout& layout) {
-  std::vector<std::set<std::uint32_t>> own(layout.partitions.size()), halo(layout.partitions.size());
+  Vector<std::set<std::uint32_t>> own(layout.partitions.size()), halo(layout.partitions.size());
   visit_lanes(layout, [&](std::size_t p, std::uint32_t lane, Lane ends) {
     if (lane < layout.batch_lanes) return;
     for (const std::uint32_t slot : {ends.lower, ends.upper}) {
@@ -123,8 +124,8 @@ void expect_groups(const Layout& layout) {
   });
   for (std::size_t p = 0; p < layout.partitions.size(); ++p) {
     const Partition& part = layout.partitions[p];
-    EXPECT_EQ(part.own_groups, std::vector<std::uint32_t>(own[p].begin(), own[p].end()));
-    EXPECT_EQ(part.halo_groups, std::vector<std::uint32_t>(halo[p].begin(), halo[p].end()));
+    EXPECT_EQ(part.own_groups, Vector<std::uint32_t>(own[p].begin(), own[p].end()));
+    EXPECT_EQ(part.halo_groups, Vector<std::uint32_t>(halo[p].begin(), halo[p].end()));
   }
 }
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 #include <numeric>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/energy.hpp"
 #include "network/violence.hpp"
 
@@ -27,9 +27,9 @@ struct Loose {
     solver = NetworkSolver::make(network, make_coefficients(network, tau, TimeStepPolicy::guard), mesh.positions,
                                  settings_of(precision));
     positions = velocities = VecArray(mesh.node_count());
-    std::vector<std::uint32_t> nodes(mesh.node_count());
+    Vector<std::uint32_t> nodes(mesh.node_count());
     std::iota(nodes.begin(), nodes.end(), 0u);
-    const std::vector<std::uint32_t> first{0, static_cast<std::uint32_t>(nodes.size())};
+    const Vector<std::uint32_t> first{0, static_cast<std::uint32_t>(nodes.size())};
     solver->set_loose({first, nodes});
     read();
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "network/loose_body.hpp"
 
 namespace crumble {
@@ -51,7 +52,7 @@ TEST(LooseState, WhoIsNoLongerLooseIsHeldLikeAnyOther) {
     VecArray forces(body.mesh.node_count());
     for (std::size_t i = 0; i < forces.size(); ++i) forces.set(i, random_vector(random, 0.05));
     body.solver->set_external(forces), never.solver->set_external(forces);
-    std::vector<NodeConstraint> here{held}, there{held};
+    Vector<NodeConstraint> here{held}, there{held};
     body.step(here), never.step(there);
     ASSERT_EQ(here[0].state, there[0].state);
     for (std::size_t i = 0; i < body.positions.size(); ++i) ASSERT_EQ(body.positions[i], never.positions[i]);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/pose.hpp"
 #include "network/loose_body.hpp"
 
@@ -109,7 +110,7 @@ TEST(Loose, TumblesAsEulerSays) {
 
 TEST(Loose, OneNodeAndTwoMoveAsTheyShould) {
   Loose one(small_box());
-  const std::vector<std::uint32_t> first{0, 1, 3}, nodes{5, 0, 1};
+  const Vector<std::uint32_t> first{0, 1, 3}, nodes{5, 0, 1};
   one.solver->set_loose({first, nodes});
   const SpringNetwork& network = one.network;
   for (std::uint32_t s = 0; s < network.spring_count(); ++s) {  // 0 and 1 stay joined
@@ -133,9 +134,9 @@ TEST(Loose, OneNodeAndTwoMoveAsTheyShould) {
 TEST(Loose, WhatMakesAGroupEvenIsNoNodeThatIsLost) {
   Loose body(small_box(), 1e-6);
   for (std::uint32_t s = 0; s < body.network.spring_count(); ++s) body.solver->set_share(s, 0);
-  const std::vector<std::uint32_t> first{0, 3}, nodes{0, 1, 2};
+  const Vector<std::uint32_t> first{0, 3}, nodes{0, 1, 2};
   body.solver->set_loose({first, nodes});
-  const std::vector<Vec3>& at = body.mesh.positions;
+  const Vector<Vec3>& at = body.mesh.positions;
   ASSERT_EQ(norm(cross(at[1] - at[0], at[2] - at[0])), 0);
   for (const std::uint32_t node : {0u, 1u}) body.solver->place(node, at[node], 990 * Vec3::UnitZ());
   body.step();
@@ -220,7 +221,7 @@ TEST(Loose, AHeldNodeBrakesItsBody) {
     for (std::uint32_t i = 0; i < body.mesh.node_count(); ++i) {
       body.solver->place(i, body.mesh.positions[i], Vec3(0, -0.1, 0));
     }
-    std::vector<NodeConstraint> constraints(count);
+    Vector<NodeConstraint> constraints(count);
     for (std::size_t k = 0; k < count; ++k) {
       NodeConstraint& held = constraints[k];
       held.node = k < 2 ? static_cast<std::uint32_t>(k) : static_cast<std::uint32_t>(body.mesh.node_count() - 1);
@@ -248,7 +249,7 @@ TEST(SpringDampers, TwoNodesLoseTheSpeedBetweenThemAsTheClosedFormSays) {
   Loose body(small_box(), kTau, Precision::float64, material);
   const auto [a, b] = body.network.springs[0];
   for (std::uint32_t s = 1; s < body.network.spring_count(); ++s) body.solver->set_share(s, 0);
-  const std::vector<std::uint32_t> first{0, 2}, nodes{a, b};
+  const Vector<std::uint32_t> first{0, 2}, nodes{a, b};
   body.solver->set_loose({first, nodes});
   const Vec3 along = normalized(body.mesh.positions[b] - body.mesh.positions[a]);
   body.solver->place(b, body.mesh.positions[b], 0.001 * along + Vec3(0, 0, 0));
@@ -280,13 +281,13 @@ TEST(SpringDampers, TakeEnergyAndNoMomentum) {
 
 TEST(Loose, EveryKernelGivesTheSameBits) {
   for (const Precision precision : {Precision::float64, Precision::float32}) {
-    std::vector<std::uint64_t> hashes;
+    Vector<std::uint64_t> hashes;
     for (const std::string& kernel : kernel_names()) {
       Random random(2);
       Loose body(small_box());
       body.solver = NetworkSolver::make(body.network, make_coefficients(body.network, kTau, TimeStepPolicy::guard),
                                         body.mesh.positions, settings_of(precision, kernel));
-      const std::vector<std::uint32_t> first{0, 4, 9}, nodes{1, 3, 5, 7, 0, 2, 4, 6, 8};
+      const Vector<std::uint32_t> first{0, 4, 9}, nodes{1, 3, 5, 7, 0, 2, 4, 6, 8};
       body.solver->set_loose({first, nodes});
       body.shake(random, 0.3, 1, Vec3(3, 2, 1));
       for (int s = 0; s < 50; ++s) body.solver->solve({});

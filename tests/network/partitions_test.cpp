@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "crumble/base/memory.hpp"
 #include "network/near_reference.hpp"
 #include "network/same_bits.hpp"
 #include "network/violence.hpp"
@@ -11,10 +12,10 @@
 namespace crumble {
 namespace {
 
-const std::vector<Body>& large_bodies() {
-  static const std::vector<Body> bodies = [] {
+const Vector<Body>& large_bodies() {
+  static const Vector<Body> bodies = [] {
     Random random(3);
-    std::vector<Body> all;
+    Vector<Body> all;
     all.push_back({"rows", make_lattice_box({0.09, 0.03, 0.03}, 0.03 / 14.5)});
     all.push_back({"bubbles", bubble_cube(0.03, 0.00155, Structure::lattice)});
     all.push_back({"random points", random_mesh(9000, random)});
@@ -41,11 +42,11 @@ TEST(Partitions, AnyNumberOfThreadsGivesTheSameBits) {
       Violence v(body.mesh, random, 10);
       ASSERT_GT(v.network.spring_count(), 50'000u) << body.name;
       const auto c = make_coefficients(v.network, 1e-3, TimeStepPolicy::guard);
-      std::vector<SolverSettings> all(6, settings_of(precision, "", 3, 0.5));
+      Vector<SolverSettings> all(6, settings_of(precision, "", 3, 0.5));
       all[0].kernel = all[5].kernel = "scalar";
       all[2].threads = 2, all[3].threads = all[5].threads = 4;
       all[4].host_threads.run = run_backwards;
-      std::vector<std::unique_ptr<NetworkSolver>> solvers;
+      Vector<std::unique_ptr<NetworkSolver>> solvers;
       for (const SolverSettings& settings : all) {
         solvers.push_back(NetworkSolver::make(v.network, c, v.rest, settings));
       }
@@ -99,7 +100,7 @@ TEST(Partitions, AHeldNodeFeelsTheForceThatWouldMoveIt) {
     v.put(*solver);
     VecArray forces(v.rest.size());
     solver->read_forces(forces);
-    std::vector<NodeConstraint> all(v.rest.size());
+    Vector<NodeConstraint> all(v.rest.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) {
       all[i].node = i;
       all[i].normal = normalized(Vec3(-forces[i]) + 1e-9 * Vec3::UnitX());

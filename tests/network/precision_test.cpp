@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "network/bodies.hpp"
 #include "network/reference.hpp"
 
@@ -20,8 +21,8 @@ constexpr int kSeconds = 16;
 
 enum class Held { at_top, at_bottom };
 
-std::vector<std::uint32_t> nodes_at(const TetMesh& mesh, double height) {
-  std::vector<std::uint32_t> nodes;
+Vector<std::uint32_t> nodes_at(const TetMesh& mesh, double height) {
+  Vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
     if (std::abs(mesh.positions[i].y() - height) < 1e-6) nodes.push_back(i);
   }
@@ -36,7 +37,7 @@ void drop_rests(NetworkSolver& solver) {
 }
 
 // Mean way down of the nodes farthest from the held ones, metres, after each second.
-std::vector<double> sag_of(Held held, Precision precision, bool plain = false) {
+Vector<double> sag_of(Held held, Precision precision, bool plain = false) {
   static const TetMesh mesh = make_lattice_box({0.03, 0.03, 0.03}, 0.0044);
   constexpr double kEnds[] = {0.03, 0};
   const bool top = held == Held::at_top;
@@ -49,7 +50,7 @@ std::vector<double> sag_of(Held held, Precision precision, bool plain = false) {
   for (std::size_t i = 0; i < mesh.node_count(); ++i) weight.y[i] = -9.81 * network.masses[i];
   solver->set_external(weight);
   const auto free_end = nodes_at(mesh, kEnds[top ? 1 : 0]);
-  std::vector<double> sag;
+  Vector<double> sag;
   for (int second = 0; second < kSeconds; ++second) {
     for (int step = 0; step < 1000; ++step) {
       solver->solve({});
@@ -62,7 +63,7 @@ std::vector<double> sag_of(Held held, Precision precision, bool plain = false) {
   return sag;
 }
 
-double rate_between(const std::vector<double>& sag, std::size_t second) {
+double rate_between(const Vector<double>& sag, std::size_t second) {
   return sag[second + 1] - sag[second];
 }
 

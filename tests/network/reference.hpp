@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 
 namespace crumble {
@@ -25,13 +25,13 @@ inline SolverSettings settings_of(Precision precision, std::string kernel = "", 
 
 class Reference {
  public:
-  std::vector<Vec3> positions, velocities, external;  // by node
-  std::vector<double> shares;                         // by spring: 1 intact, 0 gone
+  Vector<Vec3> positions, velocities, external;  // by node
+  Vector<double> shares;                         // by spring: 1 intact, 0 gone
   // what the last solve() found
-  std::vector<Vec3> forces;             // by node, N
-  std::vector<double> pulls;            // by node: sum of the sizes of all that pulls at it, N
-  std::vector<std::uint32_t> overlong;  // ascending
-  std::optional<std::uint32_t> lost;    // one of the nodes that would have left the world
+  Vector<Vec3> forces;                // by node, N
+  Vector<double> pulls;               // by node: sum of the sizes of all that pulls at it, N
+  Vector<std::uint32_t> overlong;     // ascending
+  std::optional<std::uint32_t> lost;  // one of the nodes that would have left the world
 
   Reference(const SpringNetwork& network, const StepCoefficients& coefficients, std::span<const Vec3> rest,
             const SolverSettings& settings)
@@ -46,7 +46,7 @@ class Reference {
   void solve(std::span<NodeConstraint> constraints) {
     sum_forces();
     lost.reset();
-    std::vector<Vec3> next = positions, speed = velocities;
+    Vector<Vec3> next = positions, speed = velocities;
     for (std::uint32_t i = 0; i < positions.size(); ++i) {  // Eqs (3) and (4)
       next[i] += c_.drift[i] * velocities[i] + c_.force_gain[i] * forces[i];
       speed[i] = c_.decay[i] * velocities[i] + c_.velocity_gain[i] * forces[i];

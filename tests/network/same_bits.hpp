@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 
 namespace crumble {
@@ -24,13 +24,13 @@ inline std::uint64_t force_bits(const NetworkSolver& solver) {
   return hash.value();
 }
 
-inline std::vector<std::uint32_t> copied(std::span<const std::uint32_t> ids) {
+inline Vector<std::uint32_t> copied(std::span<const std::uint32_t> ids) {
   return {ids.begin(), ids.end()};
 }
 
 /// State, forces, and what the last solve() found and did.
-inline testing::AssertionResult same_bits(const NetworkSolver& a, const std::vector<NodeConstraint>& held_by_a,
-                                          const NetworkSolver& b, const std::vector<NodeConstraint>& held_by_b) {
+inline testing::AssertionResult same_bits(const NetworkSolver& a, const Vector<NodeConstraint>& held_by_a,
+                                          const NetworkSolver& b, const Vector<NodeConstraint>& held_by_b) {
   if (copied(a.overlong()) != copied(b.overlong())) return testing::AssertionFailure() << "other springs are overlong";
   if (a.lost_node() != b.lost_node()) return testing::AssertionFailure() << "another node is lost";
   if (state_bits(a) != state_bits(b)) return testing::AssertionFailure() << "another state";

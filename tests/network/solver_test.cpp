@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/network/energy.hpp"
 #include "network/two_nodes.hpp"
 #include "network/violence.hpp"
@@ -24,7 +25,7 @@ TEST(Forces, AreTheNegativeGradientOfTheSpringEnergy) {
     positions.set(i, positions[i] + random_vector(random, 0.003));
     solver->place(i, positions[i], Vec3::Zero());
   }
-  std::vector<double> stiffnesses = network.stiffnesses;
+  Vector<double> stiffnesses = network.stiffnesses;
   stiffnesses[5] = 0, stiffnesses[8] *= 0.25;
   solver->set_share(5, 0), solver->set_share(8, 0.25);
   const VecArray forces = forces_of(*solver);
@@ -67,8 +68,8 @@ TEST(Solver, EveryFreeNodeKeepsItsMomentumBalance) {
     solver->solve(v.constraints);
     double force_sum = 0;
     Vec3 net = Vec3::Zero();
-    std::vector<Vec3> reaction(v.rest.size(), Vec3::Zero()), normal = reaction;
-    std::vector<int> moves(v.rest.size(), 1);
+    Vector<Vec3> reaction(v.rest.size(), Vec3::Zero()), normal = reaction;
+    Vector<int> moves(v.rest.size(), 1);
     for (std::size_t n = 0; n < v.rest.size(); ++n) {
       force_sum += norm(forces[n]);
       net += forces[n] - v.external[n];

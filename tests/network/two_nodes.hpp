@@ -1,15 +1,14 @@
 // The smallest network: a fixed node at the origin and a free one on the x axis, with a spring between them.
 #pragma once
 
-#include <vector>
-
+#include "crumble/base/memory.hpp"
 #include "crumble/network/solver.hpp"
 
 namespace crumble {
 
 struct TwoNodes {
   SpringNetwork network;
-  std::vector<Vec3> rest;
+  Vector<Vec3> rest;
 
   TwoNodes(double mass, double drag, double stiffness, double rest_length) {
     network.springs = {{0, 1}};

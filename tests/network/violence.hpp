@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "network/bodies.hpp"
 #include "network/reference.hpp"
 
@@ -26,16 +26,16 @@ inline void shuffle_springs(SpringNetwork& network, Random& random) {
 
 struct Violence {
   SpringNetwork network;
-  std::vector<Vec3> rest;
-  std::vector<Vec3> positions, velocities, external;  // by node
-  std::vector<double> shares;                         // by spring
-  std::vector<NodeConstraint> constraints;
+  Vector<Vec3> rest;
+  Vector<Vec3> positions, velocities, external;  // by node
+  Vector<double> shares;                         // by spring
+  Vector<NodeConstraint> constraints;
 
   Violence(const TetMesh& mesh, Random& random, double damping_ratio) : rest(mesh.positions) {
     Material material;
     material.stiffness = std::pow(10.0, random.uniform(0, 4));
     material.damping_ratio = damping_ratio;
-    const std::vector<std::uint32_t> fixed{0};
+    const Vector<std::uint32_t> fixed{0};
     network = make_network(mesh, material, MassRule::lumped, fixed);
     for (std::size_t i = 0; i < network.node_count(); ++i) {
       const double heavier = std::pow(10.0, random.uniform(-2, 2));

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 #include <utility>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "render/scene.hpp"
@@ -41,7 +41,7 @@ inline int piece_of(int i, int j, int k) {
 class PieceBuilder {
  public:
   TriangleMesh mesh;
-  std::vector<Material> materials;
+  Vector<Material> materials;
 
   /// Face `face` (-x +x -y +y -z +z) of a cell, two triangles seen from outside.
   void add_face(const std::array<int, 3>& cell, int face, Material material) {
@@ -91,7 +91,7 @@ inline PieceBuilder build_piece(int piece) {
 /// One piece, turned outward by `opening` radians about the box's lower edge on its side, standing on y = 0.
 inline RenderMesh make_piece(int piece, double opening) {
   PieceBuilder builder = build_piece(piece);
-  const std::vector<Vec3> rest = builder.mesh.vertices;
+  const Vector<Vec3> rest = builder.mesh.vertices;
   const double edge = (piece == 0 ? -0.5 : 0.5) * kBoxEdge, c = std::cos(opening);
   const double s = piece == 0 ? -std::sin(opening) : std::sin(opening);
   for (Vec3& p : builder.mesh.vertices) {
@@ -107,7 +107,7 @@ inline RenderMesh make_piece(int piece, double opening) {
 inline RenderMesh make_stick(double bottom) {
   const ConvexPolyhedron stick = make_round_stick(0.004, 0.05, 16);
   RenderMesh out =
-      make_render_mesh(stick.surface, std::vector<Material>(stick.surface.triangles.size(), Material::wood), 30);
+      make_render_mesh(stick.surface, Vector<Material>(stick.surface.triangles.size(), Material::wood), 30);
   out.rest_positions = out.positions;
   for (Vec3& p : out.positions) p.y() += bottom + 0.004;
   return out;

@@ -9,6 +9,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "render/mesh_file.hpp"
 #include "render/temporary_folder.hpp"
@@ -52,13 +53,13 @@ Surface broken_bar() {
   return surface;
 }
 
-std::vector<double> numbers(const auto& values) {
-  std::vector<double> out;
+Vector<double> numbers(const auto& values) {
+  Vector<double> out;
   for (const auto value : values) out.push_back(static_cast<double>(value));
   return out;
 }
 
-void expect_closed_halves(const TriangleMesh& mesh, const std::vector<double>& fragments) {
+void expect_closed_halves(const TriangleMesh& mesh, const Vector<double>& fragments) {
   for (const double id : kIds) {
     const TriangleMesh half = select(mesh, fragments, id);
     EXPECT_EQ(half.triangles.size(), 12u);
@@ -115,7 +116,7 @@ TEST(BrokenSurfaceFile, ObjHasAnObjectForEachFragmentAndItsMaterialsBesideIt) {
   ASSERT_EQ(scene->mNumMeshes, 4u) << "two objects of two materials";
   std::multiset<std::string> seen;
   std::map<std::string, TriangleMesh> fragments;
-  std::vector<std::pair<std::string, const aiMesh*>> meshes;
+  Vector<std::pair<std::string, const aiMesh*>> meshes;
   for (unsigned i = 0; i < scene->mRootNode->mNumChildren; ++i) {
     const aiNode& node = *scene->mRootNode->mChildren[i];
     for (unsigned k = 0; k < node.mNumMeshes; ++k)
@@ -153,10 +154,10 @@ TEST(BrokenSurfaceFile, ObjHasAnObjectForEachFragmentAndItsMaterialsBesideIt) {
 }
 
 template <class T>
-std::vector<T> read_accessor(const tinygltf::Model& model, int number) {
+Vector<T> read_accessor(const tinygltf::Model& model, int number) {
   const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(number));
   const tinygltf::BufferView& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
-  std::vector<T> values(accessor.count);
+  Vector<T> values(accessor.count);
   std::memcpy(static_cast<void*>(values.data()), model.buffers.at(0).data.data() + view.byteOffset,
               accessor.count * sizeof(T));
   return values;

@@ -5,17 +5,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
-#include <vector>
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 
 namespace crumble::render {
 namespace {
 
-std::vector<ForceSample> press(int count) {
-  std::vector<ForceSample> samples;
+Vector<ForceSample> press(int count) {
+  Vector<ForceSample> samples;
   for (int i = 0; i < count; ++i) {
     const double depth = 0.02 * i / count;
     samples.push_back({1000 * depth, depth, {0.1, 100 * depth, -0.05}, static_cast<std::uint64_t>(i / 10)});
@@ -37,7 +37,7 @@ TEST(ForcePlot, WritesALabelledSvg) {
 
 TEST(ForcePlot, ThinningKeepsPeaksOfOneSample) {
   const TemporaryFolder folder;
-  std::vector<ForceSample> samples = press(20000);
+  Vector<ForceSample> samples = press(20000);
   samples[7777].force.x() = -39;
   samples[3333].force.z() = 57;
   write_force_plot(samples, PlotAxis::depth, "", folder.file("force.svg"));
@@ -71,7 +71,7 @@ TEST(ForcePlot, AMissingGnuplotIsNamedAndTheOldFileStays) {
 }
 
 TEST(ForcePlot, RefusesBadSamples) {
-  std::vector<ForceSample> samples = press(9);
+  Vector<ForceSample> samples = press(9);
   EXPECT_THROW(write_force_plot({}, PlotAxis::time, "", "unused.svg"), Error);
   samples[3].force.y() = std::nan("");
   EXPECT_THROW(write_force_plot(samples, PlotAxis::time, "", "unused.svg"), Error);

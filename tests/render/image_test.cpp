@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 
 namespace crumble::render {
@@ -53,7 +54,7 @@ TEST(Image, PngWhereNoFileCanBeIsAnIoError) {
 }
 
 TEST(Image, TilesLieInRowsWithBorders) {
-  std::vector<Image> images;
+  Vector<Image> images;
   for (const std::uint8_t shade : std::initializer_list<std::uint8_t>{10, 20, 30, 40, 50})
     images.push_back(make_image(7, 5, {shade, shade, shade}));
   const Image out = tile(images, 3, 2, {255, 0, 0});
@@ -70,7 +71,7 @@ TEST(Image, TilesLieInRowsWithBorders) {
 }
 
 TEST(Image, TilesOfDifferentSizesAreRefused) {
-  const std::vector<Image> images = {make_image(7, 5, {}), make_image(7, 6, {})};
+  const Vector<Image> images = {make_image(7, 5, {}), make_image(7, 6, {})};
   EXPECT_THROW(tile(images, 2, 1, {}), Error);
   EXPECT_THROW(tile({}, 2, 1, {}), Error);
 }
@@ -93,7 +94,7 @@ TEST(Image, TextStaysInItsBoxAndIsCutAtTheEdge) {
 }
 
 TEST(Image, PhasesStandTwoByTwoOverTheirCaptions) {
-  std::vector<Image> phases;
+  Vector<Image> phases;
   for (const std::uint8_t shade : std::initializer_list<std::uint8_t>{10, 20, 30, 40})
     phases.push_back(make_image(360, 200, {shade, 0, 0}));
   const Image out = tile_phases(std::span<const Image, 4>(phases.data(), 4), {"one", "two", "three", "four"});

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "render/temporary_folder.hpp"
 #include "support/mesh_files.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 struct ReadBack {
   TriangleMesh mesh;
-  std::vector<Vec3> colours;
+  Vector<Vec3> colours;
 };
 
 Vec3 to_vec(const aiVector3D& v) {

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "render/broken_box.hpp"
 #include "render/offscreen_context.hpp"
@@ -37,7 +38,7 @@ class RendererTest : public ::testing::Test {
 };
 
 RenderMesh whole(const TriangleMesh& mesh, Material material, double crease_degrees) {
-  return make_render_mesh(mesh, std::vector<Material>(mesh.triangles.size(), material), crease_degrees);
+  return make_render_mesh(mesh, Vector<Material>(mesh.triangles.size(), material), crease_degrees);
 }
 
 RenderMesh box(const Vec3& size, const Vec3& center) {

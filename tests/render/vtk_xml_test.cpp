@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 #include "support/mesh_files.hpp"
 
@@ -18,9 +19,9 @@ TEST(VtkXml, KeepsArraysOfAnyLength) {
     VtkGrid grid;
     grid.time = 0.1 * count;
     grid.cell = VtkCell::vertex;
-    std::vector<std::uint8_t> bytes;
-    std::vector<std::int32_t> ids;
-    std::vector<double> numbers;
+    Vector<std::uint8_t> bytes;
+    Vector<std::int32_t> ids;
+    Vector<double> numbers;
     for (std::int32_t i = 0; i < count; ++i) {
       grid.points.push_back({1.0 / 3 * i, -1e-9, 1e300});
       grid.corners.push_back(count - 1 - i);
@@ -36,7 +37,7 @@ TEST(VtkXml, KeepsArraysOfAnyLength) {
     EXPECT_EQ(back.points, grid.points);
     EXPECT_EQ(back.cell_type, 1);
     for (std::int32_t i = 0; i < count; ++i) {
-      EXPECT_EQ(back.cells.at(i), std::vector<std::uint32_t>{static_cast<std::uint32_t>(count - 1 - i)});
+      EXPECT_EQ(back.cells.at(i), Vector<std::uint32_t>{static_cast<std::uint32_t>(count - 1 - i)});
       EXPECT_EQ(back.point_data.at("bytes").at(i), 255 - i);
       EXPECT_EQ(Vec3(&back.point_data.at("vectors").at(3 * i)), grid.points[i]);
       EXPECT_EQ(back.cell_data.at("ids").at(i), -i);
@@ -66,11 +67,11 @@ TEST(VtkXml, ListsFramesByTime) {
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(to_pvd({{0.001, "a/a_0000.vtu"}, {0.1, "a/a & b.vtu"}}).c_str()));
   EXPECT_STREQ(document.child("VTKFile").attribute("type").value(), "Collection");
-  std::vector<std::string> rows;
+  Vector<std::string> rows;
   for (const auto& frame : document.child("VTKFile").child("Collection").children("DataSet")) {
     rows.push_back(std::string(frame.attribute("timestep").value()) + " " + frame.attribute("file").value());
   }
-  EXPECT_EQ(rows, (std::vector<std::string>{"0.001 a/a_0000.vtu", "0.1 a/a & b.vtu"}));
+  EXPECT_EQ(rows, (Vector<std::string>{"0.001 a/a_0000.vtu", "0.1 a/a & b.vtu"}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "scenes/scene.hpp"
 
 namespace crumble {
@@ -33,14 +34,14 @@ struct Bounds {
   Vec3 size() const { return high - low; }
 };
 
-Bounds bounds(const std::vector<Vec3>& points) {
+Bounds bounds(const Vector<Vec3>& points) {
   Bounds b{points[0], points[0]};
   for (const Vec3& p : points) b.low = b.low.cwiseMin(p), b.high = b.high.cwiseMax(p);
   return b;
 }
 
 Bounds tool_bounds(const Scene& scene) {
-  std::vector<Vec3> points = scene.def.tools[0].shape->surface().vertices;
+  Vector<Vec3> points = scene.def.tools[0].shape->surface().vertices;
   for (Vec3& p : points) p = Frame(scene.motions[0].start).to_scene(p);
   return bounds(points);
 }
@@ -50,7 +51,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
 }
 
 TEST(BuiltInScenes, AllLoadInBothPresets) {
-  const std::vector<std::string> names = scene_names();
+  const Vector<std::string> names = scene_names();
   for (const PaperScene& paper : kScenes) EXPECT_EQ(std::count(names.begin(), names.end(), paper.name), 1);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);

@@ -4,9 +4,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "render/temporary_folder.hpp"
 #include "scenes/scene.hpp"
 
@@ -49,7 +49,7 @@ struct Mistake {
   const char* pointer;  // of the key
   const char* value;    // as JSON; nothing: the key is taken away
   Code code;
-  std::vector<const char*> message;  // parts
+  Vector<const char*> message;  // parts
 };
 
 void expect_refused(const Mistake& mistake, json scene) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/geometry/mesh_solid.hpp"
@@ -55,7 +56,7 @@ void expect_refused(Code code, const std::string& message, const std::string& po
 }
 
 // The same solid gives the same bytes.
-std::vector<std::uint8_t> bytes_of(const Solid& solid) {
+Vector<std::uint8_t> bytes_of(const Solid& solid) {
   ByteWriter out;
   solid->write(out);
   return out.bytes();
@@ -152,7 +153,7 @@ TEST(SceneWorld, HasRegionsAndChoices) {
   const Outcome outcome = load(scene);
   ASSERT_EQ(outcome.code, Code{}) << outcome.message;
   const SimulationDef& def = outcome.scene.def;
-  std::vector<std::uint32_t> expected;
+  Vector<std::uint32_t> expected;
   for (std::uint32_t i = 0; i < def.mesh.node_count(); ++i) {
     const Vec3& p = def.mesh.positions[i];
     if (p.y() <= 1e-6 || p.y() >= 0.0159 || p.x() <= -0.0099 || i == 3) expected.push_back(i);
@@ -192,9 +193,8 @@ TEST(SceneWorld, HasAttachments) {
 }
 
 // A pyramid that is dented from below, as every format writes it, in millimetres.
-const std::vector<Vec3> kCorners{{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}, {0, 8, 0}, {0, 3, 0}};
-const std::vector<Triangle> kFaces{{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0},
-                                   {0, 1, 5}, {1, 2, 5}, {2, 3, 5}, {3, 0, 5}};
+const Vector<Vec3> kCorners{{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}, {0, 8, 0}, {0, 3, 0}};
+const Vector<Triangle> kFaces{{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}, {0, 1, 5}, {1, 2, 5}, {2, 3, 5}, {3, 0, 5}};
 
 std::string as_text_stl() {
   std::string text = "solid dent\n";

@@ -11,6 +11,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/text.hpp"
 #include "sim/contact_plots.hpp"
 #include "sim/press_rig.hpp"
@@ -34,12 +35,12 @@ struct Press {
   std::function<void(SimulationDef&)> change = [](SimulationDef&) {};
   double depth = 0.026;  // m
 
-  std::vector<Sample> samples = {};
-  double tau = 0, tool_work = 0;  // s, J
-  std::vector<Vec3> end = {};     // positions
+  crumble::Vector<Sample> samples = {};
+  double tau = 0, tool_work = 0;   // s, J
+  crumble::Vector<Vec3> end = {};  // positions
 };
 
-double farthest_contact(const Simulation& sim, const std::vector<Vec3>& before) {
+double farthest_contact(const Simulation& sim, const crumble::Vector<Vec3>& before) {
   double farthest = 0;
   for (const NodeConstraint& c : sim.contacts()) {
     farthest = std::max(farthest, norm(sim.positions()[c.node] - before[c.node]));
@@ -52,7 +53,7 @@ void run(Press& press) {
   press.change(rig.scene.def);
   rig.sim = Simulation(rig.scene.def);
   press.tau = rig.scene.def.step.tau;
-  std::vector<Vec3> before(rig.sim.mesh().positions);
+  crumble::Vector<Vec3> before(rig.sim.mesh().positions);
   Vec3 last = Vec3::Zero();
   while (kSpeed * rig.sim.info().time < press.depth) {
     rig.press();
@@ -103,7 +104,7 @@ void write_csv(const Press& press, const std::filesystem::path& folder) {
 // By how many steps `late` has to be drawn ahead to lie on `raw` best.
 int best_shift(const Press& raw, const Press& late) {
   constexpr int kMost = 10;
-  std::vector<double> squares(kMost + 1);
+  crumble::Vector<double> squares(kMost + 1);
   for (std::size_t i = kMost; i < raw.samples.size(); ++i) {
     for (std::size_t shift = 0; shift <= kMost; ++shift) {
       const double miss = late.samples[i].force - raw.samples[i - shift].force;
@@ -224,16 +225,18 @@ void experiment(const std::filesystem::path& folder) {
     print_delay(stick->standard, stick->mean);
     print_delay(stick->paper_no_mean, stick->paper);
   }
-  draw_panels(std::vector{lying.forces("stick lying across the cube"), upright.forces("stick upright")},
+  draw_panels(crumble::Vector<Panel>{lying.forces("stick lying across the cube"), upright.forces("stick upright")},
               folder / "contact_force.png");
-  draw_panels(std::vector{lying.force_changes("stick lying across the cube"), upright.force_changes("stick upright")},
+  draw_panels(crumble::Vector<Panel>{lying.force_changes("stick lying across the cube"),
+                                     upright.force_changes("stick upright")},
               folder / "contact_change.png");
   draw_panels(
-      std::vector{around_greatest_change("default, where it changes most", lying.standard, lying.mean),
-                  around_greatest_change("paper preset, where it changes most", lying.paper_no_mean, lying.paper)},
+      crumble::Vector<Panel>{
+          around_greatest_change("default, where it changes most", lying.standard, lying.mean),
+          around_greatest_change("paper preset, where it changes most", lying.paper_no_mean, lying.paper)},
       folder / "contact_mean.png");
-  draw_panels(std::vector{thin_panel("needle of 2 mm, upright", needle, needle_nodes),
-                          thin_panel("stick of 3 x 10 mm, upright", flat, flat_nodes)},
+  draw_panels(crumble::Vector<Panel>{thin_panel("needle of 2 mm, upright", needle, needle_nodes),
+                                     thin_panel("stick of 3 x 10 mm, upright", flat, flat_nodes)},
               folder / "contact_thin.png");
 }
 

@@ -4,19 +4,20 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
+
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 struct Curve {
   std::string title;
-  std::vector<double> x, y;
+  Vector<double> x, y;
 };
 
 struct Panel {
   std::string title, x_label, y_label;
-  std::vector<Curve> curves;  // up to four
-  bool logarithmic = false;   // in y
+  Vector<Curve> curves;      // up to four
+  bool logarithmic = false;  // in y
 };
 
 /// Panels from left to right; a curve of one title has one colour everywhere if it stands at the same place. Long

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/sim/recording.hpp"
 #include "sim/crumbling_rig.hpp"
@@ -25,15 +26,15 @@ struct Rubble : CrumblingRig {
     }
     return least;
   }
-  std::vector<std::uint32_t> nodes_of(std::uint32_t fragment) const {
-    std::vector<std::uint32_t> nodes;
+  Vector<std::uint32_t> nodes_of(std::uint32_t fragment) const {
+    Vector<std::uint32_t> nodes;
     for (std::uint32_t n = 0; n < sim.mesh().node_count(); ++n) {
       if (sim.node_fragments()[n] == fragment) nodes.push_back(n);
     }
     return nodes;
   }
-  std::vector<Vec3> places(const std::vector<std::uint32_t>& nodes) const {
-    std::vector<Vec3> places;
+  Vector<Vec3> places(const Vector<std::uint32_t>& nodes) const {
+    Vector<Vec3> places;
     for (const std::uint32_t n : nodes) places.push_back(sim.positions()[n]);
     return places;
   }
@@ -103,8 +104,8 @@ TEST(Debris, ASleepingFragmentStandsStillWhileTheOthersGoOn) {
 
 TEST(Debris, AToolWakesWhatItTouches) {
   Rubble rubble;
-  for (const std::uint32_t f : std::vector<std::uint32_t>(rubble.sim.find_debris({100000, 1e3}).begin(),
-                                                          rubble.sim.find_debris({100000, 1e3}).end())) {
+  for (const std::uint32_t f : Vector<std::uint32_t>(rubble.sim.find_debris({100000, 1e3}).begin(),
+                                                     rubble.sim.find_debris({100000, 1e3}).end())) {
     rubble.sim.set_fragment_state(f, FragmentState::asleep);
   }
   const std::uint64_t asleep = rubble.sim.counters().asleep;
@@ -121,10 +122,10 @@ TEST(Debris, AToolWakesWhatItTouches) {
 TEST(Debris, WhatIsRemovedIsNotThereAnyMore) {
   Rubble rubble;
   const auto debris = rubble.sim.find_debris({10, 1e3});
-  const std::vector<std::uint32_t> gone(debris.begin(), debris.end());
+  const Vector<std::uint32_t> gone(debris.begin(), debris.end());
   ASSERT_GT(gone.size(), 2u);
   std::size_t node_count = 0;
-  std::vector<std::uint32_t> nodes;
+  Vector<std::uint32_t> nodes;
   for (const std::uint32_t f : gone) {
     for (const std::uint32_t n : rubble.nodes_of(f)) nodes.push_back(n);
     node_count += rubble.sim.fragments().record(f).node_count;
@@ -173,8 +174,8 @@ TEST(Debris, SnapshotsRecordingsAndResetsKnowOfIt) {
     rubble.press();
     recording.add({&rubble.pose, 1}, rubble.sim.state_hash());
   };
-  const std::vector<std::uint32_t> debris(rubble.sim.find_debris({10, 1e3}).begin(),
-                                          rubble.sim.find_debris({10, 1e3}).end());
+  const Vector<std::uint32_t> debris(rubble.sim.find_debris({10, 1e3}).begin(),
+                                     rubble.sim.find_debris({10, 1e3}).end());
   ASSERT_GT(debris.size(), 2u);
   change(debris[0], FragmentState::asleep);
   change(debris[1], FragmentState::removed);

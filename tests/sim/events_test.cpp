@@ -3,14 +3,15 @@
 
 #include <map>
 
+#include "crumble/base/memory.hpp"
 #include "sim/crumbling_rig.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace crumble {
 namespace {
 
-std::vector<Event> of_kind(const Simulation& sim, EventKind kind) {
-  std::vector<Event> found;
+Vector<Event> of_kind(const Simulation& sim, EventKind kind) {
+  Vector<Event> found;
   for (const Event& event : sim.events()) {
     if (event.kind == kind) found.push_back(event);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "sim/heap_rig.hpp"
 
@@ -12,8 +13,8 @@ namespace crumble {
 namespace {
 
 // Half the mean rest length of each node's springs, which is what a ball's radius is said to be.
-std::vector<double> ball_radii(const SpringNetwork& network) {
-  std::vector<double> sums(network.node_count()), counts(network.node_count());
+Vector<double> ball_radii(const SpringNetwork& network) {
+  Vector<double> sums(network.node_count()), counts(network.node_count());
   for (std::size_t s = 0; s < network.spring_count(); ++s) {
     for (const std::uint32_t node : network.springs[s]) sums[node] += network.rest_lengths[s], counts[node] += 1;
   }
@@ -72,7 +73,7 @@ TEST_F(Heap, LiesStillThreeSecondsAfterItWasStirred) {
 
 // Crumbs that the springs of a greater fragment hold in its jaws are the ones pressed deep.
 TEST_F(Heap, CrumbsDoNotSinkIntoEachOther) {
-  const std::vector<double> radii = ball_radii(rig->sim.network());
+  const Vector<double> radii = ball_radii(rig->sim.network());
   const std::size_t pairs = rig->sim.ball_contact_count();
   ASSERT_GT(pairs, 500u);
   std::size_t deep = 0;
@@ -99,8 +100,8 @@ TEST(HeapState, GoesOnFromASnapshotToTheLastBit) {
 // Two boxes in one mesh, `gap` between them.
 SimulationDef stack(double edge, double gap) {
   const TetMesh box = make_lattice_box({edge, edge, edge}, edge / 4);
-  std::vector<Vec3> positions = box.positions;
-  std::vector<Tetrahedron> tetrahedra = box.tetrahedra;
+  Vector<Vec3> positions = box.positions;
+  Vector<Tetrahedron> tetrahedra = box.tetrahedra;
   const auto nodes = static_cast<std::uint32_t>(box.node_count());
   for (const Vec3& p : box.positions) positions.push_back(p + Vec3(0, edge + gap, 0));
   for (Tetrahedron t : box.tetrahedra) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "sim/press_rig.hpp"
 #include "support/allocation_counter.hpp"
@@ -170,8 +171,8 @@ TEST(LocalModel, TheForceLawIsNeverStifferThanTheModel) {
 
 /// The contacts of the tool: the same before and after a step when nothing was let go or met, has begun or ceased to
 /// slide or has slid onto another face.
-std::vector<std::tuple<std::uint32_t, ContactState, double, double>> contacts_of(const Simulation& sim) {
-  std::vector<std::tuple<std::uint32_t, ContactState, double, double>> all;
+Vector<std::tuple<std::uint32_t, ContactState, double, double>> contacts_of(const Simulation& sim) {
+  Vector<std::tuple<std::uint32_t, ContactState, double, double>> all;
   for (const NodeConstraint& c : sim.contacts()) {
     if (c.holder == 0)
       all.emplace_back(c.node, c.state, std::round(1e3 * c.normal.x()), std::round(1e3 * c.normal.y()));

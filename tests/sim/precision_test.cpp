@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumble/base/memory.hpp"
 #include "sim/press_rig.hpp"
 
 namespace crumble {
@@ -20,7 +21,7 @@ PressRig make_rig(Precision precision, const std::string& kernel, double speed, 
 TEST(Precision, EveryKernelPressesToTheSameBits) {
   for (const Precision precision : {Precision::float64, Precision::float32}) {
     PressRig scalar = make_rig(precision, "scalar", 0.035);
-    std::vector<PressRig> others;
+    Vector<PressRig> others;
     for (const std::string& kernel : kernel_names()) others.push_back(make_rig(precision, kernel, 0.035));
     for (int step = 0; step < 500; ++step) {
       scalar.press();
@@ -34,7 +35,7 @@ TEST(Precision, EveryKernelPressesToTheSameBits) {
 }
 
 struct Curves {
-  std::vector<Vec3> in_doubles, in_floats;  // force on the tool by step, N
+  Vector<Vec3> in_doubles, in_floats;  // force on the tool by step, N
   double peak = 0;
 };
 

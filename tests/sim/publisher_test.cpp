@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "sim/press_rig.hpp"
 #include "support/allocation_counter.hpp"
@@ -114,7 +115,7 @@ TEST(Publisher, ALargeBodyIsCopiedInSlicesEachOfOneStep) {
   const std::size_t nodes = sim.mesh().node_count(), springs = sim.network().spring_count();
   StatePublisher publisher(sim);
   publisher.latest();
-  std::vector<PublishedState> past;  // by step, whole
+  Vector<PublishedState> past;  // by step, whole
   const auto step = [&] {
     sim.step({});
     publisher.publish(sim);
@@ -165,7 +166,7 @@ TEST(Publisher, PublishNowIsTheWholeStateOfALargeBodyToo) {
 TEST(Publisher, AResetOrARestoreBeginsACopyAgain) {
   Simulation sim(torn_box());
   sim.step({});
-  const std::vector<std::uint8_t> saved = sim.snapshot();
+  const Vector<std::uint8_t> saved = sim.snapshot();
   StatePublisher publisher(sim);
   for (const bool restore : {false, true}) {
     for (int i = 0; i < 70 || publisher.latest().step + 1 != sim.info().step; ++i) {
@@ -185,7 +186,7 @@ TEST(Publisher, AResetOrARestoreBeginsACopyAgain) {
 TEST(Publisher, PassesOnEachEventOnce) {
   PressRig rig("tofu_cube", Preset::standard, 0.02);
   StatePublisher publisher(rig.sim);
-  std::vector<Event> expected, seen, out(7);
+  Vector<Event> expected, seen, out(7);
   const auto read = [&] {
     for (std::size_t count = 1; count > 0;) {
       count = publisher.read_events(out);
@@ -225,7 +226,7 @@ TEST(Publisher, AllocatesNothing) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "a sanitizer owns malloc";
   PressRig rig("tofu_cube", Preset::standard, 0.02);
   StatePublisher publisher(rig.sim);
-  std::vector<Event> out(100);
+  Vector<Event> out(100);
   std::size_t allocations = 1;
   {
     const AllocationCounter counter;

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/fracture/surface.hpp"
 #include "crumble/sim/publisher.hpp"
 #include "sim/press_rig.hpp"
@@ -28,9 +29,9 @@ std::chrono::duration<double> test_time() {
 
 // What one thread alone finds in each step of the press.
 struct Reference {
-  std::vector<VecArray> positions;
-  std::vector<std::vector<std::uint8_t>> intact;
-  std::vector<std::vector<std::uint32_t>> fragments;
+  Vector<VecArray> positions;
+  Vector<Vector<std::uint8_t>> intact;
+  Vector<Vector<std::uint32_t>> fragments;
 
   explicit Reference(PressRig rig) {
     for (std::uint64_t step = 0; step <= kPressSteps; ++step, rig.press()) {
@@ -54,7 +55,7 @@ TEST(Publisher, AThreadAtSixtyHertzSeesWholeStepsOfAThreadAtOneKilohertz) {
   StatePublisher publisher(rig.sim);
   std::atomic<bool> done{false}, seen_enough{false};  // however the threads are scheduled
   std::uint64_t events_made = 0, rounds = 0;
-  const std::vector<std::uint8_t> start = rig.sim.snapshot();
+  const Vector<std::uint8_t> start = rig.sim.snapshot();
 
   std::thread stepper([&] {
     const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(test_time());
@@ -76,7 +77,7 @@ TEST(Publisher, AThreadAtSixtyHertzSeesWholeStepsOfAThreadAtOneKilohertz) {
   });
 
   std::uint64_t states = 0, wrong = 0, last = 0, events_seen = 0, most_triangles = 0;
-  std::vector<Event> events(1000);
+  Vector<Event> events(1000);
   for (bool was_done = false; !was_done;) {
     was_done = done.load();
     std::this_thread::sleep_for(std::chrono::microseconds(16667));

@@ -7,6 +7,7 @@
 
 #include "crumble/base/file.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/recording.hpp"
 #include "sim/press_rig.hpp"
 
@@ -58,7 +59,7 @@ TEST(Snapshot, ABadOneIsRefusedAndChangesNothing) {
   PressRig other;
   other.press_to(0.002);
   const std::uint64_t before = other.sim.state_hash();
-  const auto refused = [&](std::vector<std::uint8_t> bytes) {
+  const auto refused = [&](Vector<std::uint8_t> bytes) {
     try {
       other.sim.restore(bytes);
     } catch (const Error& error) {
@@ -120,7 +121,7 @@ TEST(Snapshot, OneThatIsWholeButImpossibleIsRefused) {
   const std::size_t flags = place_of(rig.sim.intact());
   EXPECT_EQ(code_with(flags, std::uint8_t{2}), Code::corrupt);
   const std::uint64_t count = rig.sim.new_cuts().size();
-  std::vector<std::uint32_t> list{static_cast<std::uint32_t>(count), 0};  // its length, then the springs
+  Vector<std::uint32_t> list{static_cast<std::uint32_t>(count), 0};  // its length, then the springs
   list.insert(list.end(), rig.sim.new_cuts().begin(), rig.sim.new_cuts().end());
   const std::size_t cuts = place_of(std::span<const std::uint32_t>(list)) + 8;
   EXPECT_EQ(code_with(cuts, static_cast<std::uint32_t>(rig.sim.intact().size())), Code::corrupt);
@@ -185,7 +186,7 @@ TEST_F(RecordingFile, DamageIsRefusedWithItsName) {
   }
   recording.save(path);
   const auto good = read_bytes(path);
-  const auto code_of = [&](const std::vector<std::uint8_t>& bytes) {
+  const auto code_of = [&](const Vector<std::uint8_t>& bytes) {
     write_bytes(path, bytes);
     try {
       Recording::load(path).start();

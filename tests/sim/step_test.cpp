@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "sim/press_rig.hpp"
 #include "support/allocation_counter.hpp"
@@ -110,7 +111,7 @@ TEST(Step, MeanForceIsTheMeanOfTheLastFive) {
   PressRig plain, mean;
   mean.scene.def.step.mean_force = true;
   mean.sim = Simulation(mean.scene.def);
-  std::vector<Vec3> last(5, Vec3::Zero());
+  Vector<Vec3> last(5, Vec3::Zero());
   for (int step = 0; step < 700; ++step) {
     plain.press(), mean.press();
     last.erase(last.begin());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/geometry/tool_solids.hpp"
 #include "crumble/sim/simulation.hpp"
@@ -20,7 +21,7 @@ struct Press {
   double half_height;  // of the tool as it stands
 };
 
-std::vector<Press> presses() {
+Vector<Press> presses() {
   const Solid round = make_round_stick(0.004, 0.05, 16), square = make_bar({0.006, 0.006, 0.05}),
               flat = make_bar({0.003, 0.01, 0.05}), needle = make_round_stick(0.001, 0.03, 16);
   return {{"round lying", round, false, 0.004},   {"round upright", round, true, 0.025},
@@ -83,8 +84,8 @@ TEST(ThinTools, NodesAloneMissMostOfTheNeedles) {
 
 // Thicker than the nodes are apart, but not where they meet the body.
 TEST(SharpTools, MeetResistanceBetweenNodes) {
-  const std::vector<std::pair<Solid, bool>> shapes{{make_cone(0.005, 0.02), true},
-                                                   {make_blade({0.01, 0.02, 0.05}, 0.02), false}};
+  const Vector<std::pair<Solid, bool>> shapes{{make_cone(0.005, 0.02), true},
+                                              {make_blade({0.01, 0.02, 0.05}, 0.02), false}};
   for (const auto& [shape, upright] : shapes) {
     int met[2] = {0, 0};
     for (const bool samples : {false, true}) {
@@ -113,7 +114,7 @@ TEST(ThinTools, NeedlesForceIsSmoothThroughCuts) {
 
 // 30 places, 10 mm/s, 15 mm: the table of docs/contact.md. The target of 0.1 N is missed by thin tools.
 TEST(ThinTools, ForceIsNearlySmoothAtThirtyPlaces) {
-  const std::vector<Press> all = presses();
+  const Vector<Press> all = presses();
   for (const std::size_t which : {0u, 4u, 5u, 6u}) {
     ThinRig rig(all[which]);
     Random random(5);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 namespace {
@@ -32,18 +33,18 @@ double take(const std::string& type, const std::string& bytes, std::size_t& at) 
 struct PlyElement {
   std::string name;
   std::size_t count = 0;
-  std::vector<std::vector<std::string>> properties;  // words
+  Vector<Vector<std::string>> properties;  // words
 };
 
-std::vector<PlyElement> read_header(const std::string& bytes, std::size_t& at) {
+Vector<PlyElement> read_header(const std::string& bytes, std::size_t& at) {
   at = bytes.find("end_header\n");
   EXPECT_NE(at, std::string::npos);
   std::istringstream lines(bytes.substr(0, at));
   at += std::strlen("end_header\n");
-  std::vector<PlyElement> elements;
+  Vector<PlyElement> elements;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream in(line);
-    std::vector<std::string> words;
+    Vector<std::string> words;
     for (std::string word; in >> word;) words.push_back(word);
     if (words[0] == "element") elements.push_back({words[1], std::stoul(words[2]), {}});
     if (words[0] == "property") elements.back().properties.emplace_back(words.begin() + 1, words.end());
@@ -67,13 +68,13 @@ std::string from_base64(const std::string& text) {
   return bytes;
 }
 
-std::vector<double> read_array(const pugi::xml_node& array) {
+Vector<double> read_array(const pugi::xml_node& array) {
   EXPECT_STREQ(array.attribute("format").value(), "binary");
   const std::string text = array.text().get(), bytes = from_base64(text);
   EXPECT_EQ(text.size() % 4, 0u);
   std::size_t at = 0;
   EXPECT_EQ(take("UInt64", bytes, at) + 8, static_cast<double>(bytes.size())) << array.attribute("Name").value();
-  std::vector<double> values;
+  Vector<double> values;
   while (at < bytes.size()) values.push_back(take(array.attribute("type").value(), bytes, at));
   EXPECT_EQ(at, bytes.size());
   return values;
@@ -98,7 +99,7 @@ PlyFile read_ply(const std::filesystem::path& path) {
   for (const PlyElement& element : read_header(bytes, at)) {
     Columns& columns = element.name == "vertex" ? file.vertex : file.face;
     for (std::size_t i = 0; i < element.count; ++i) {
-      for (const std::vector<std::string>& property : element.properties) {
+      for (const Vector<std::string>& property : element.properties) {
         if (property[0] != "list") {
           columns[property[1]].push_back(take(property[0], bytes, at));
           continue;
@@ -127,12 +128,12 @@ VtuFile read_vtu(const std::filesystem::path& path) {
   const std::size_t cells = piece.attribute("NumberOfCells").as_uint();
   VtuFile file;
   file.time = read_array(grid.child("FieldData").child("DataArray")).at(0);
-  const std::vector<double> numbers = read_arrays(piece.child("Points"), points).at("Points");
+  const Vector<double> numbers = read_arrays(piece.child("Points"), points).at("Points");
   for (std::size_t i = 0; i < points; ++i) file.points.emplace_back(&numbers[3 * i]);
-  std::vector<double> corners;
+  Vector<double> corners;
   for (const pugi::xml_node& array : piece.child("Cells").children()) {
     const std::string name = array.attribute("Name").value();
-    const std::vector<double> values = read_array(array);
+    const Vector<double> values = read_array(array);
     if (name == "connectivity") corners = values;
     if (name == "types") file.cell_type = static_cast<int>(values.at(0));
     if (name != "offsets") continue;
@@ -156,7 +157,7 @@ TriangleMesh VtuFile::mesh() const {
   return mesh;
 }
 
-TriangleMesh select(const TriangleMesh& mesh, const std::vector<double>& ids, double id) {
+TriangleMesh select(const TriangleMesh& mesh, const Vector<double>& ids, double id) {
   TriangleMesh out;
   std::map<std::uint32_t, std::uint32_t> numbers;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -175,7 +176,7 @@ TriangleMesh select(const TriangleMesh& mesh, const std::vector<double>& ids, do
 TriangleMesh weld(const TriangleMesh& mesh) {
   std::map<std::array<double, 3>, std::uint32_t> ids;
   TriangleMesh out;
-  std::vector<std::uint32_t> id_of;
+  Vector<std::uint32_t> id_of;
   for (const Vec3& p : mesh.vertices) {
     const auto [at, is_new] = ids.emplace(std::array{p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(ids.size()));
     if (is_new) out.vertices.push_back(p);

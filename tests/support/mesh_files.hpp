@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
 namespace crumble {
 
-using Columns = std::map<std::string, std::vector<double>>;
+using Columns = std::map<std::string, Vector<double>>;
 
 struct PlyFile {
   TriangleMesh mesh;
@@ -21,9 +21,9 @@ PlyFile read_ply(const std::filesystem::path& path);
 
 struct VtuFile {
   double time = 0;
-  std::vector<Vec3> points;
+  Vector<Vec3> points;
   int cell_type = 0;  // of all cells
-  std::vector<std::vector<std::uint32_t>> cells;
+  Vector<Vector<std::uint32_t>> cells;
   Columns point_data, cell_data;  // three numbers per point for vectors
 
   /// Of a file of triangles.
@@ -32,7 +32,7 @@ struct VtuFile {
 VtuFile read_vtu(const std::filesystem::path& path);
 
 /// The triangles whose id is `id`, with the vertices that they use.
-TriangleMesh select(const TriangleMesh& mesh, const std::vector<double>& ids, double id);
+TriangleMesh select(const TriangleMesh& mesh, const Vector<double>& ids, double id);
 
 /// Vertices of equal position become one: for formats whose triangles share none.
 TriangleMesh weld(const TriangleMesh& mesh);

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
 namespace crumble {
@@ -58,8 +58,8 @@ class Silhouette {
 
   ParallelCamera camera_;
   Vec3 right_;
-  std::vector<Pixel> pixels_;
-  std::vector<Corner> corners_;
+  Vector<Pixel> pixels_;
+  Vector<Corner> corners_;
 };
 
 }  // namespace crumble

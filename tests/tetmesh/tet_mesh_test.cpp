@@ -8,6 +8,7 @@
 
 #include "crumble/base/error.hpp"
 #include "crumble/base/file.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/random.hpp"
 #include "crumble/tetmesh/lattice_box.hpp"
 #include "crumble/tetmesh/vtk_file.hpp"
@@ -46,7 +47,7 @@ TEST(TetMesh, SpringsAreTheUniqueEdges) {
 TEST(TetMesh, BoundaryIsWhatOneTetrahedronHas) {
   TetMesh mesh = make_lattice_box({0.04, 0.03, 0.03}, 0.01);
   Random random(5);  // tetrahedra and their corners in any order
-  std::vector<Tetrahedron> tets = mesh.tetrahedra;
+  Vector<Tetrahedron> tets = mesh.tetrahedra;
   for (std::size_t i = tets.size() - 1; i > 0; --i) std::swap(tets[i], tets[random.below(i + 1)]);
   for (Tetrahedron& t : tets) std::rotate(t.begin(), t.begin() + random.below(3), t.begin() + 3);
   mesh = make_tet_mesh(mesh.positions, tets);
@@ -76,7 +77,7 @@ TEST(TetMesh, NodeVolumesSumToTheBody) {
   EXPECT_NEAR(sum / 2.7e-5, 1, 1e-12);
 }
 
-Code code_of(std::vector<Vec3> positions, std::vector<Tetrahedron> tetrahedra) {
+Code code_of(Vector<Vec3> positions, Vector<Tetrahedron> tetrahedra) {
   try {
     make_tet_mesh(std::move(positions), std::move(tetrahedra));
   } catch (const Error& error) {
@@ -86,7 +87,7 @@ Code code_of(std::vector<Vec3> positions, std::vector<Tetrahedron> tetrahedra) {
 }
 
 TEST(TetMesh, RefusesBadMeshesByName) {
-  const std::vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   EXPECT_EQ(code_of(corner, {{0, 1, 2, 3}}), Code{0});
   EXPECT_EQ(code_of({}, {{0, 1, 2, 3}}), Code::empty);
   EXPECT_EQ(code_of(corner, {}), Code::empty);

@@ -32,6 +32,15 @@
 #else
 #define CRUMBLE_API
 #endif
+/* Functions that may still change, or go, in any version; the others keep docs/versions.md. A program that must not use
+ * them defines CRUMBLE_NO_EXPERIMENTAL: then calling one does not compile. */
+#if defined(CRUMBLE_NO_EXPERIMENTAL) && defined(__clang__)
+#define CRUMBLE_EXPERIMENTAL CRUMBLE_API __attribute__((unavailable("experimental")))
+#elif defined(CRUMBLE_NO_EXPERIMENTAL) && defined(__GNUC__)
+#define CRUMBLE_EXPERIMENTAL CRUMBLE_API __attribute__((error("experimental")))
+#else
+#define CRUMBLE_EXPERIMENTAL CRUMBLE_API
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -102,6 +111,57 @@ enum {
 CRUMBLE_API const char *crumble_last_error(void);
 /* "CRUMBLE_E_NULL" and so on; "unknown" for a number that is no result. Static text. [any] */
 CRUMBLE_API const char *crumble_result_name(crumble_result result);
+
+/* ---- Memory and log --------------------------------------------------------------------------------------------- */
+
+/* Where the library's memory comes from. Called by every thread that makes, changes or destroys objects, also by
+ * several at once, and never in a step. Not asked for: words for people, file names and file buffers, threads, the
+ * table of handles, and what other libraries take for themselves (FCL while a mesh tool is added, HDAPI, Boost). */
+typedef struct crumble_memory_source {
+  uint32_t struct_size;
+  uint32_t reserved; /* keep 0 */
+  /* `bytes` (above 0) at a multiple of `alignment`, a power of two up to 64; NULL when there are none: the call that
+   * needs them answers CRUMBLE_E_NO_MEMORY. */
+  void *(*take)(uint64_t bytes, uint64_t alignment, void *user);
+  /* What take() gave, with the same bytes and alignment. */
+  void (*give_back)(void *memory, uint64_t bytes, uint64_t alignment, void *user);
+  void *user; /* given to both */
+} crumble_memory_source;
+
+/* Since the source was set. */
+typedef struct crumble_memory_info {
+  uint32_t struct_size;
+  uint32_t reserved;     /* 0 */
+  uint64_t blocks;       /* taken and not given back */
+  uint64_t bytes;        /* in these */
+  uint64_t most_bytes;   /* that there ever were */
+  uint64_t longest_free; /* bytes that crumble_memory_use_block could still give at once; 0 without it */
+} crumble_memory_info;
+
+/* The host's functions from here on; NULL: those of the C++ run time again. CRUMBLE_E_IN_USE (an object is alive: set
+ * it before the first is made), _NULL (take, give_back), _UNINITIALIZED, _VERSION. [any] */
+CRUMBLE_API crumble_result crumble_memory_set_source(const crumble_memory_source *source);
+/* The library has these `bytes` and no more: it gives them out by itself, first fit. `memory` stays the host's and must
+ * live until another source is set. How much a body needs: crumble_memory_get_info tells it of one that is there.
+ * CRUMBLE_E_NULL, _OUT_OF_RANGE (fewer than 4096), _IN_USE. [any] */
+CRUMBLE_EXPERIMENTAL crumble_result crumble_memory_use_block(void *memory, uint64_t bytes);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [any] */
+CRUMBLE_API crumble_result crumble_memory_get_info(crumble_memory_info *info);
+
+enum {
+  CRUMBLE_LOG_ERROR = 1,   /* what crumble_last_error says of a call that failed */
+  CRUMBLE_LOG_WARNING = 2, /* something works, but not as asked for: damping that a device cannot give, ... */
+  CRUMBLE_LOG_NOTE = 3     /* which device was opened, how a loop's thread is scheduled, ... */
+};
+
+/* `text` is one line, UTF-8, valid during the call. It is called in the thread that made the call it tells of, before
+ * that returns; never in a step, a tick, or a read or write of a device, and by no thread of the library's own. It may
+ * call this API. */
+typedef void (*crumble_log_function)(uint32_t level, const char *text, void *user);
+
+/* What the library has to say goes to `function` from here on; NULL (default): nowhere. Other threads may still be in
+ * the one before when this returns. [any] */
+CRUMBLE_API crumble_result crumble_log_set(crumble_log_function function, void *user);
 
 /* ---- Arrays ----------------------------------------------------------------------------------------------------- */
 
@@ -217,6 +277,9 @@ CRUMBLE_API crumble_result crumble_mesh_create_paper(uint32_t body, crumble_mesh
 CRUMBLE_API crumble_result crumble_mesh_create_from_tets(const double *positions, uint32_t node_count,
                                                          const uint32_t *tetrahedra, uint32_t tetrahedron_count,
                                                          crumble_mesh *mesh);
+/* Writes it as a legacy VTK file (unstructured grid, m, node kinds as point data), which ParaView and meshio read.
+ * `path` is UTF-8; the file is replaced only when all of it is written. CRUMBLE_E_NULL, _IO, _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_mesh_save_vtk(crumble_mesh mesh, const char *path);
 /* NULL is allowed and does nothing. Simulations made from the mesh keep what they need. [one] */
 CRUMBLE_API crumble_result crumble_mesh_destroy(crumble_mesh mesh);
 /* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
@@ -295,6 +358,9 @@ typedef struct crumble_sim_def {
   double ball_static_friction; /* between fragments, as for tools; default 0.5 */
   double ball_dynamic_friction; /* default 0.5 */
   double spring_damping;        /* of a damper along each spring, N s/m; >= 0; default 0 */
+  uint32_t energy_audit; /* 1: keep the books for crumble_sim_get_energy, which takes four more passes over the springs;
+                            default 0. Changes no bit of what comes out */
+  uint32_t reserved_2;   /* keep 0 */
 } crumble_sim_def;
 
 /* Where a tool is. This struct never changes its size. */
@@ -367,7 +433,8 @@ typedef struct crumble_wrench {
 enum {
   CRUMBLE_STEP_TOOL_JUMPED = 1,       /* a tool or attachment moved farther than a step can follow */
   CRUMBLE_STEP_CONTACT_SUSPENDED = 2, /* a tool that jumped, or began inside the body, has not been outside since */
-  CRUMBLE_STEP_GUARDED = 4            /* CRUMBLE_POLICY_GUARD raised the drag of some nodes */
+  CRUMBLE_STEP_GUARDED = 4,           /* CRUMBLE_POLICY_GUARD raised the drag of some nodes */
+  CRUMBLE_STEP_DROPPED = 8            /* only from crumble_sim_advance: steps were left out for want of time */
 };
 
 /* The last step. */
@@ -396,7 +463,32 @@ typedef struct crumble_counters {
   uint64_t woken;           /* fragments, by tools and by fragments that hit them */
   uint64_t removed;         /* fragments */
   uint64_t removed_nodes;
+  uint64_t dropped_steps; /* by crumble_sim_advance, for want of time */
 } crumble_counters;
+
+/* What came of several steps. */
+typedef struct crumble_advance_info {
+  uint32_t struct_size;
+  uint32_t flags;    /* CRUMBLE_STEP_ bits of all of them */
+  uint32_t steps;    /* done */
+  uint32_t dropped;  /* steps left out: simulated time lags by so many */
+  uint32_t new_cuts; /* springs */
+  uint32_t reserved; /* 0 */
+  double seconds;    /* wall time that they took, s */
+  double time;       /* simulated, since the start, s */
+} crumble_advance_info;
+
+/* The books of the energy audit, J: stored = tool_work + external_work - dissipated - cut, since the start. */
+typedef struct crumble_energy {
+  uint32_t struct_size;
+  uint32_t reserved;        /* 0 */
+  double stored;            /* in springs and motion, J, now */
+  double tool_work;         /* by tools and walls, J */
+  double external_work;     /* by gravity, node forces, fragments that push each other, changes of the definition, J */
+  double dissipated;        /* by drag and damping, J */
+  double cut;               /* gone with cut springs, J */
+  double gain_max_relative; /* greatest growth by the solver alone in a substep over stored energy; 1e-15 is rounding */
+} crumble_energy;
 
 /* Wall time of each stage of the last step, s. */
 typedef struct crumble_profile {
@@ -492,7 +584,8 @@ typedef struct crumble_surface_info {
 } crumble_surface_info;
 
 /* Defaults. `struct_size`: sizeof of the struct.
- * CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has). [any] */
+ * CRUMBLE_E_NULL, _UNINITIALIZED (size 0), _VERSION (a size that no version has), _NO_MEMORY (in the first call of a
+ * process). [any] */
 CRUMBLE_API crumble_result crumble_sim_def_init(crumble_sim_def *def, uint32_t struct_size);
 CRUMBLE_API crumble_result crumble_tool_def_init(crumble_tool_def *def, uint32_t struct_size);
 CRUMBLE_API crumble_result crumble_wall_def_init(crumble_wall_def *def, uint32_t struct_size);
@@ -506,31 +599,46 @@ CRUMBLE_API crumble_result crumble_sim_create(crumble_mesh mesh, const crumble_s
 /* NULL is allowed and does nothing. [one] */
 CRUMBLE_API crumble_result crumble_sim_destroy(crumble_sim sim);
 
-/* Set-up. The functions of this group rebuild the simulation. They are for the time before its first step, or after
- * crumble_sim_reset, and outside a recording: CRUMBLE_E_STATE else. All: CRUMBLE_E_NO_MEMORY. [one] */
+/* Set-up and change. The functions of this group say what the simulation is. Before the first step, without readers and
+ * loops, they build it anew. Later they change it between two steps: all that moves stays as it is and where it is, and
+ * goes on under the new rule; a recording keeps the change, snapshots from before it fit no more. What cannot change
+ * then is said (CRUMBLE_E_STATE): tau, iterations, precision, the number of tools, attachments. Takes as long as
+ * crumble_sim_create. All: CRUMBLE_E_NO_MEMORY. While a loop runs: crumble_loop_configure, _set_tool, _set_friction. */
 
 /* What the simulation was made with, changed by what was called since; `kernel` is static text.
  * CRUMBLE_E_UNINITIALIZED, _VERSION. At any time. [one] */
 CRUMBLE_API crumble_result crumble_sim_get_def(crumble_sim sim, crumble_sim_def *def);
-/* Another definition: material, gravity, floor, step. Errors as crumble_sim_create. [one] */
+/* Another definition: material, gravity, floor, step. Errors as crumble_sim_create; _STATE (see above). [one] */
 CRUMBLE_API crumble_result crumble_sim_configure(crumble_sim sim, const crumble_sim_def *def);
 /* Tools count from 0 in the order they are added; `index` receives the number and may be NULL. The first pose of the
  * first step places a tool.
- * CRUMBLE_E_INVALID_VALUE (also of a support function whose points no convex set has), _OUT_OF_RANGE, _UNINITIALIZED,
- * _VERSION, _NULL (arrays of a mesh, a support function), _BAD_POSE (offset); for a mesh also _MESH (fewer than 4
- * triangles, index, position not finite, surfaces that cross; the text names the first bad one), _MESH_OPEN,
- * _MESH_ORIENTATION, _TOO_LARGE. [one] */
+ * CRUMBLE_E_STATE (stepped, readers, loops), _INVALID_VALUE (also of a support function whose points no convex set
+ * has), _OUT_OF_RANGE, _UNINITIALIZED, _VERSION, _NULL (arrays of a mesh, a support function), _BAD_POSE (offset); for
+ * a mesh also _MESH (fewer than 4 triangles, index, position not finite, surfaces that cross; the text names the first
+ * bad one), _MESH_OPEN, _MESH_ORIENTATION, _TOO_LARGE. [one] */
 CRUMBLE_API crumble_result crumble_sim_add_tool(crumble_sim sim, const crumble_tool_def *def, uint32_t *index);
+/* Another tool in the place of number `tool`. One whose solid or offset changes lets go of the body, and touches it
+ * again once it has been outside. Errors as crumble_sim_add_tool; _OUT_OF_RANGE (no such tool). [one] */
+CRUMBLE_API crumble_result crumble_sim_set_tool(crumble_sim sim, uint32_t tool, const crumble_tool_def *def);
+/* Friction of a tool, as in crumble_tool_def; what it holds it goes on holding. CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE
+ * (no such tool; friction). [one] */
+CRUMBLE_API crumble_result crumble_sim_set_friction(crumble_sim sim, uint32_t tool, double static_friction,
+                                                    double dynamic_friction);
 /* Nodes that go where a frame goes: a clamp, a hand that never lets go. Like a tool it is moved by a pose in each step,
  * which stands behind those of the tools and of the attachments before it; `index` receives its number among the
  * attachments, from 0, and may be NULL. The nodes keep the places in the frame that they have at its first pose.
  * `nodes` (count) are copied. CRUMBLE_E_NULL, _EMPTY (count 0), _OUT_OF_RANGE (no such node), _STATE (a node that is
- * fixed or attached already). [one] */
+ * fixed or attached already; stepped, readers, loops). [one] */
 CRUMBLE_API crumble_result crumble_sim_add_attachment(crumble_sim sim, const uint32_t *nodes, uint32_t count,
                                                       uint32_t *index);
 /* CRUMBLE_E_INVALID_VALUE, _OUT_OF_RANGE (not a unit normal; friction), _UNINITIALIZED, _VERSION. [one] */
 CRUMBLE_API crumble_result crumble_sim_add_wall(crumble_sim sim, const crumble_wall_def *def);
-/* The nodes that never move: `nodes` (count) replaces those named before. `nodes` may be NULL with count 0.
+/* Another wall in the place of number `wall`; they count from 0 in the order they were added, behind the floor, if
+ * there is one, which is number 0. Nodes behind it are put before it in the next step.
+ * CRUMBLE_E_OUT_OF_RANGE (also: no such wall), _INVALID_VALUE, _UNINITIALIZED, _VERSION. [one] */
+CRUMBLE_API crumble_result crumble_sim_set_wall(crumble_sim sim, uint32_t wall, const crumble_wall_def *def);
+/* The nodes that never move: `nodes` (count) replaces those named before. `nodes` may be NULL with count 0. A node that
+ * is fixed in mid-run stops where it is.
  * CRUMBLE_E_OUT_OF_RANGE (no such node). [one] */
 CRUMBLE_API crumble_result crumble_sim_fix_nodes(crumble_sim sim, const uint32_t *nodes, uint32_t count);
 /* The same with all nodes whose rest position has y <= height (m): what stands on the table.
@@ -562,10 +670,23 @@ CRUMBLE_API crumble_result crumble_sim_step(crumble_sim sim, const crumble_pose 
  * both may be NULL with count 0. [one] */
 CRUMBLE_API crumble_result crumble_sim_step_tools(crumble_sim sim, const crumble_pose *poses, crumble_wrench *wrenches,
                                                   uint32_t tool_count);
+/* Several steps for a host whose frames are longer than one: a game's fixed update, a script. In `steps` (1 to 100000)
+ * steps the tools go evenly from where they are to `poses`, where one that has not been placed is put at once;
+ * `wrenches` receives the means, which times the time advanced are the impulses. Steps are whole or not at all: at least
+ * one is done, and another only while it can be expected to end within `budget` seconds of wall time (0: all of them).
+ * The tools stay where the last one brought them. `info` may be NULL. Poses, wrenches, memory and errors as
+ * crumble_sim_step_tools; where a step fails, those before it stand, and all wrenches are zero. Also
+ * CRUMBLE_E_OUT_OF_RANGE and _INVALID_VALUE (steps, budget), _UNINITIALIZED, _VERSION. [one] */
+CRUMBLE_EXPERIMENTAL crumble_result crumble_sim_advance(crumble_sim sim, const crumble_pose *poses,
+                                                        crumble_wrench *wrenches, uint32_t tool_count, uint32_t steps,
+                                                        double budget, crumble_advance_info *info);
 /* About the last step. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
 CRUMBLE_API crumble_result crumble_sim_get_step_info(crumble_sim sim, crumble_step_info *info);
 CRUMBLE_API crumble_result crumble_sim_get_counters(crumble_sim sim, crumble_counters *counters);
 CRUMBLE_API crumble_result crumble_sim_get_profile(crumble_sim sim, crumble_profile *profile);
+/* Sums since the start, with energy_audit in crumble_sim_def: CRUMBLE_E_STATE else. CRUMBLE_E_UNINITIALIZED, _VERSION
+ * (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_sim_get_energy(crumble_sim sim, crumble_energy *energy);
 /* How steps are computed. CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
 CRUMBLE_API crumble_result crumble_sim_get_info(crumble_sim sim, crumble_sim_info *info);
 
@@ -656,6 +777,32 @@ CRUMBLE_API crumble_result crumble_sim_end_recording(crumble_sim sim);
  * [any] */
 CRUMBLE_API crumble_result crumble_verify_recording(const char *path, uint64_t *step_count, uint64_t *equal_steps);
 
+/* A recording's file, opened to be looked at step by step. */
+typedef struct crumble_recording_t *crumble_recording;
+
+typedef struct crumble_recording_info {
+  uint32_t struct_size;
+  uint32_t tool_count; /* and attachments: poses of each step */
+  uint64_t step_count;
+  uint64_t first_step; /* steps that the simulation had done before it was recorded */
+} crumble_recording_info;
+
+/* CRUMBLE_E_NULL, _IO, _FORMAT, _VERSION, _CORRUPT, _NO_MEMORY. [any] */
+CRUMBLE_API crumble_result crumble_recording_load(const char *path, crumble_recording *recording);
+/* NULL is allowed and does nothing. [one] */
+CRUMBLE_API crumble_result crumble_recording_destroy(crumble_recording recording);
+/* CRUMBLE_E_UNINITIALIZED, _VERSION (struct_size). [one] */
+CRUMBLE_API crumble_result crumble_recording_get_info(crumble_recording recording, crumble_recording_info *info);
+/* The simulation as it was where the recording begins. CRUMBLE_E_CORRUPT, _VERSION, _UNSUPPORTED (a tool of a support
+ * function), _NO_MEMORY. [one] */
+CRUMBLE_API crumble_result crumble_recording_create_sim(crumble_recording recording, crumble_sim *sim);
+/* Does step `step` of the recording, from 0, with all that the host did to the simulation before it, and moves `sim`
+ * from where step - 1 left it. `equal` receives 1 if it is then in the recorded state, else 0, and may be NULL. What the
+ * tools felt tells crumble_sim_get_contacts. CRUMBLE_E_OUT_OF_RANGE (no such step; another number of tools), _CORRUPT,
+ * _STATE (the simulation is being recorded), _DIVERGED, _NO_MEMORY. [one] in both */
+CRUMBLE_API crumble_result crumble_recording_step(crumble_recording recording, crumble_sim sim, uint64_t step,
+                                                  uint32_t *equal);
+
 /* ---- Readers ---------------------------------------------------------------------------------------------------- */
 
 /* Looks at a simulation from another thread, which draws, listens or logs at its own pace, say 60 times a second, while
@@ -663,7 +810,8 @@ CRUMBLE_API crumble_result crumble_verify_recording(const char *path, uint64_t *
  * its state when the reader has asked for one, at most 60 times in a second of simulated time. A body of more than 1024
  * nodes is copied in slices over up to 16 steps (more from 131 072 nodes on); such a state is a few steps older at one
  * end than at the other.
- * A reader outlives its simulation, with the last state; while a simulation has readers it cannot be set up again. */
+ * A reader outlives its simulation, with the last state; while a simulation has readers it gets no more tools and
+ * attachments. */
 typedef struct crumble_reader_t *crumble_reader;
 
 /* What a cut spring opens in the surface. */
@@ -1042,7 +1190,7 @@ CRUMBLE_API crumble_result crumble_device_write(crumble_device device, const dou
 /* The haptic loop: reads devices, moves tools, steps the body, and sends what is fit for a hand. Every sample is looked
  * at before it is believed, and no force reaches a device but through the safety stages; why a hand gets no force is
  * told as its fault, which stays until crumble_loop_reset_fault.
- * While a loop exists, its simulation and devices cannot be destroyed, nor the simulation be set up
+ * While a loop exists, its simulation and devices cannot be destroyed, nor the simulation get more tools
  * (CRUMBLE_E_IN_USE). From crumble_loop_start to crumble_loop_stop they are the loop's own, and so they are in
  * crumble_loop_tick: every call with them is answered CRUMBLE_E_BUSY. Readers go on; make them before the start. A
  * recording that runs goes on too, and makes ticks take memory. What is [any] here can be asked while the loop runs. */
@@ -1261,6 +1409,16 @@ CRUMBLE_API crumble_result crumble_loop_get_times(crumble_loop loop, crumble_loo
  * CRUMBLE_E_OUT_OF_RANGE (index), _BUFFER_TOO_SMALL. [any] */
 CRUMBLE_API crumble_result crumble_loop_get_warning(crumble_loop loop, uint32_t index, char *dst, uint64_t dst_bytes,
                                                     uint64_t *needed);
+/* The simulation's definition, a tool, a tool's friction, in mid-run: as crumble_sim_configure, _set_tool and
+ * _set_friction, worked out in the thread that calls; the change is made between two steps, and the loop does not wait
+ * for it. Several are made in their order, one before each step; crumble_loop_stop makes those that wait. While the
+ * loop does not run they are made at once.
+ * Errors as these; CRUMBLE_E_STATE (also: 64 changes wait for a step). [any] */
+CRUMBLE_EXPERIMENTAL crumble_result crumble_loop_configure(crumble_loop loop, const crumble_sim_def *def);
+CRUMBLE_EXPERIMENTAL crumble_result crumble_loop_set_tool(crumble_loop loop, uint32_t tool,
+                                                          const crumble_tool_def *def);
+CRUMBLE_EXPERIMENTAL crumble_result crumble_loop_set_friction(crumble_loop loop, uint32_t tool, double static_friction,
+                                                              double dynamic_friction);
 /* No force on any hand from the next tick on, until its fault is reset. [any] */
 CRUMBLE_API crumble_result crumble_loop_halt(crumble_loop loop);
 /* A hand that is faulted waits again from the next tick on, and gets its force back by the ramp. Of another: nothing.

@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
@@ -31,7 +31,7 @@ class ByteWriter {
     put_raw(values.data(), values.size_bytes());
   }
   template <Plain T>
-  void put(const std::vector<T>& values) {
+  void put(const Vector<T>& values) {
     put(std::span<const T>(values));
   }
   void put_raw(const void* data, std::size_t size) {
@@ -39,10 +39,10 @@ class ByteWriter {
     bytes_.resize(at + size);
     if (size > 0) std::memcpy(bytes_.data() + at, data, size);
   }
-  std::vector<std::uint8_t>& bytes() { return bytes_; }
+  Vector<std::uint8_t>& bytes() { return bytes_; }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  Vector<std::uint8_t> bytes_;
 };
 
 /// Reads what ByteWriter wrote. Throws Error(corrupt), naming `what` it was reading, instead of running past the end;
@@ -57,10 +57,10 @@ class ByteReader {
     return value;
   }
   template <Plain T>
-  std::vector<T> get_vector() {
+  Vector<T> get_vector() {
     const auto count = get<std::uint64_t>();
     if (count > left() / sizeof(T)) fail();
-    std::vector<T> values(static_cast<std::size_t>(count));
+    Vector<T> values(static_cast<std::size_t>(count));
     get_raw(values.data(), values.size() * sizeof(T));
     return values;
   }

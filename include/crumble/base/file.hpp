@@ -6,14 +6,14 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 /// Throws Error(io) naming the path and the system's reason.
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path);
+Vector<std::uint8_t> read_bytes(const std::filesystem::path& path);
 std::string read_text(const std::filesystem::path& path);
 void write_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_text(const std::filesystem::path& path, std::string_view text);

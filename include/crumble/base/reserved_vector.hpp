@@ -3,15 +3,15 @@
 // wait for one.
 #pragma once
 
-#include <vector>
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
 template <class T>
-class ReservedVector : public std::vector<T> {
+class ReservedVector : public Vector<T> {
  public:
   ReservedVector() = default;
-  ReservedVector(const ReservedVector& other) : std::vector<T>() { *this = other; }
+  ReservedVector(const ReservedVector& other) : Vector<T>() { *this = other; }
   ReservedVector(ReservedVector&&) noexcept = default;
   ReservedVector& operator=(const ReservedVector& other) {
     reserve(other.capacity());

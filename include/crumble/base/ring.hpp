@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 
 namespace crumble {
 
@@ -62,7 +62,7 @@ class Ring {
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  std::vector<T> items_;
+  Vector<T> items_;
   alignas(64) std::atomic<std::uint64_t> pushed_{0};  // the producer's, with dropped_
   std::atomic<std::uint64_t> dropped_{0};
   alignas(64) std::atomic<std::uint64_t> popped_{0};  // the consumer's

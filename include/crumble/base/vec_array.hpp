@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble {
@@ -27,7 +27,7 @@ struct VecSpan {
 
 /// Owning.
 struct VecArray {
-  std::vector<double> x, y, z;
+  Vector<double> x, y, z;
 
   VecArray() = default;
   explicit VecArray(std::size_t n) : x(n), y(n), z(n) {}

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/shape.hpp"
 #include "crumble/tetmesh/quality.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
@@ -42,13 +42,13 @@ struct LatticeRow {
 };
 
 struct BubbleMesh {
-  TetMesh mesh;  // nodes in lattice row order: by layer, row, place in the row; tetrahedra by least node
-  std::vector<LatticeRow> rows;                  // all nodes, in their order
-  std::vector<std::int32_t> places;              // of each node in its row; the nearest if it is off the lattice
-  std::vector<std::uint8_t> lattice_neighbours;  // per spring: 1 if it joins neighbours on the lattice, see below
+  TetMesh mesh;                 // nodes in lattice row order: by layer, row, place in the row; tetrahedra by least node
+  Vector<LatticeRow> rows;      // all nodes, in their order
+  Vector<std::int32_t> places;  // of each node in its row; the nearest if it is off the lattice
+  Vector<std::uint8_t> lattice_neighbours;  // per spring: 1 if it joins neighbours on the lattice, see below
   MeshQuality quality;
   double volume_error = 0;  // (volume of the tetrahedra - volume of the shape) / volume of the shape
-  std::vector<std::string> warnings;
+  Vector<std::string> warnings;
 };
 
 // Lattice neighbours are the twelve nearest ones and the two at the far end of the diagonal along which all perfect

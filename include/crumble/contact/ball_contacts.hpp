@@ -83,6 +83,9 @@ class BallContacts {
 
   /// Back to the whole body; to be followed by update().
   void reset() noexcept;
+  /// Masses, stiffnesses, friction and time step of `next`, for the same nodes and springs; who takes part and who
+  /// touches whom stays. Allocates nothing; update() has to follow.
+  void redefine(BallContacts& next) noexcept;
 
   /// load() throws Error(corrupt) for what save() cannot have written for this body, and then changes nothing.
   void save(ByteWriter& out) const;

@@ -10,9 +10,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/contact/surface_samples.hpp"
@@ -26,8 +26,8 @@ class Contacts {
  public:
   /// `fixed`: 1 for nodes that never move and so are never in contact (node_count). `surface`: of the body, for thin
   /// tools to meet between its nodes; empty: nodes only. Throws Error what check() throws of each part.
-  Contacts(std::vector<Tool> tools, std::vector<Wall> walls, std::span<const std::uint8_t> fixed, ContactRule rule,
-           std::vector<Attachment> attachments = {}, SurfaceSamples surface = {});
+  Contacts(Vector<Tool> tools, Vector<Wall> walls, std::span<const std::uint8_t> fixed, ContactRule rule,
+           Vector<Attachment> attachments = {}, SurfaceSamples surface = {});
 
   /// Stage 1: a tool or attachment goes from where it is to `target` within `tau` seconds. Holders are numbered as in
   /// NodeConstraint: the tools, then the attachments.
@@ -72,6 +72,8 @@ class Contacts {
   std::span<const Attachment> attachments() const noexcept { return attachments_; }
   /// Of the hand that moves it.
   const Pose& pose(std::size_t holder) const noexcept { return motions_[holder].to; }
+  /// False before the first move.
+  bool placed(std::size_t holder) const noexcept { return motions_[holder].placed; }
   /// Of the tool or attachment itself.
   const Frame& frame(std::size_t holder) const noexcept { return motions_[holder].to_frame; }
   /// Of a tool: false from a jump, or from a start inside the body, until the tool has been outside once. Of an
@@ -82,6 +84,11 @@ class Contacts {
   /// A suspended tool lets go of all that it holds and touches nothing; after it, it is not engaged until it has been
   /// outside once. Attachments hold on.
   void suspend(std::size_t tool, bool suspended) noexcept;
+
+  /// Between two steps: the tools, walls, rule, surface and fixed nodes of `next`, which has as many tools and the same
+  /// attachments and gets what was here in exchange. What is held stays held, but by `moved_tools` (1; by tool), which
+  /// are to be placed anew, and by walls when they have moved. Allocates nothing.
+  void redefine(Contacts& next, std::span<const std::uint8_t> moved_tools, bool moved_walls) noexcept;
 
   /// Back to before the first move, all nodes awake, none excluded, nothing cut.
   void clear() noexcept;
@@ -158,22 +165,23 @@ class Contacts {
   void add(const NodeConstraint& constraint, const Place& place) noexcept;
   static void project(NodeConstraint& constraint, NodeSource& nodes) noexcept;
   void release(std::uint32_t node) noexcept;
+  void take_friction(NodeConstraint& constraint, const Place& place) const noexcept;
   void load_contact(ByteReader& in);
 
-  std::vector<Tool> tools_;
-  std::vector<Wall> walls_;
-  std::vector<Attachment> attachments_;
-  std::vector<Bounds> bounds_;   // of the tools
-  std::vector<Motion> motions_;  // of the tools, then the attachments
-  std::vector<Vec3> anchors_;    // of attached nodes in their frames, one attachment behind the other
+  Vector<Tool> tools_;
+  Vector<Wall> walls_;
+  Vector<Attachment> attachments_;
+  Vector<Bounds> bounds_;   // of the tools
+  Vector<Motion> motions_;  // of the tools, then the attachments
+  Vector<Vec3> anchors_;    // of attached nodes in their frames, one attachment behind the other
   ContactRule rule_;
   SurfaceSamples surface_;
   ReservedVector<NodeConstraint> constraints_, previous_;
   ReservedVector<Place> places_, previous_places_;
   ReservedVector<std::uint32_t> roused_;
-  std::vector<Use> uses_;               // of each node
-  std::vector<std::uint32_t> held_at_;  // index of its constraint, of each held node
-  std::vector<std::uint32_t> hints_;    // of each node, for SolidModel::find_inside
+  Vector<Use> uses_;               // of each node
+  Vector<std::uint32_t> held_at_;  // index of its constraint, of each held node
+  Vector<std::uint32_t> hints_;    // of each node, for SolidModel::find_inside
 };
 
 }  // namespace crumble

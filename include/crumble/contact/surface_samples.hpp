@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
@@ -51,12 +51,12 @@ class SurfaceSamples {
 
   std::shared_ptr<const Faces> faces_;
   double node_spacing_ = 0, longest_spring_ = 0;
-  std::vector<std::uint8_t> cut_;            // of each spring
-  std::vector<std::uint8_t> broken_;         // of each tetrahedron
-  std::vector<std::uint8_t> open_;           // of each face
-  std::vector<std::uint32_t> open_of_node_;  // how many
-  std::vector<std::uint32_t> seen_;          // of each face, the search that last met it
-  std::vector<std::uint32_t> found_;         // as many as there are faces
+  Vector<std::uint8_t> cut_;            // of each spring
+  Vector<std::uint8_t> broken_;         // of each tetrahedron
+  Vector<std::uint8_t> open_;           // of each face
+  Vector<std::uint32_t> open_of_node_;  // how many
+  Vector<std::uint32_t> seen_;          // of each face, the search that last met it
+  Vector<std::uint32_t> found_;         // as many as there are faces
   std::uint32_t search_ = 0;
 };
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/pose.hpp"
 #include "crumble/geometry/solid.hpp"
 
@@ -25,7 +25,7 @@ struct Tool {
 /// Nodes that go where a frame goes, from first to last: a clamp, a hand that never lets go. It is moved like a tool.
 /// Nodes keep the places in it that they have when it is first placed.
 struct Attachment {
-  std::vector<std::uint32_t> nodes;
+  Vector<std::uint32_t> nodes;
 };
 
 /// A half-space that the body stays out of: n . x >= offset on the body's side. A floor is {(0, 1, 0), 0}.

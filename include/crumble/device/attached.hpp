@@ -2,8 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 #include "crumble/device/inverse3.hpp"
 
@@ -27,6 +27,6 @@ struct AttachedOptions {
 /// Hardware on USB that the kinds of this build are for, and the drivers that they need. Opens no device (but see
 /// ask_services); loads HDAPI if there is one. A device on Ethernet or FireWire is not seen: HDAPI cannot list, so
 /// there the driver alone is told.
-std::vector<AttachedDevice> attached_devices(const AttachedOptions& options = {});
+Vector<AttachedDevice> attached_devices(const AttachedOptions& options = {});
 
 }  // namespace crumble

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/geometry/pose.hpp"
 
 namespace crumble {
@@ -102,7 +103,7 @@ struct ServoTick {
 
 /// Real-time rule for read and write: no allocation, no lock, no system call that can block, no exception; they are
 /// called from one thread at a time.
-class Device {
+class Device : public Allocated {
  public:
   virtual ~Device() = default;
   Device(const Device&) = delete;

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <memory>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 
 namespace crumble {
@@ -20,18 +20,18 @@ struct HandPoint {
 /// m x'' = k (wanted - x) - b x' - f sign(x') + F: hand and device as one mass on a spring and a damper, as a grip is.
 /// x is wanted at time 0, before the first point. The orientation stays.
 struct HandOptions {
-  Pose start = {};                // m, device frame
-  std::vector<HandPoint> points;  // one at least
-  double mass = 0.1;              // m, kg, of hand and device; > 0
-  double stiffness = 50;          // k, N/m, of the grip; >= 0
-  double damping = 0.5;           // b, N s/m, of both; >= 0
-  double friction = 0;            // f, N, dry friction in the device; >= 0
-  double encoder_step = 0;        // m: positions are told in whole steps of it, along each axis; 0: as they are
-  std::uint32_t delay = 0;        // ticks between a write and its force; at most kMaxDelay
-  double device_mass = 0.075;     // kg, of the device alone, as its info tells; (0, mass]
-  double max_force = 3.3;         // N, of its motors: the norm of what is written is clamped to it; > 0
-  double max_stiffness = 0;       // N/m and
-  double max_damping = 0;         // N s/m, as its info tells; 0: it does not
+  Pose start = {};             // m, device frame
+  Vector<HandPoint> points;    // one at least
+  double mass = 0.1;           // m, kg, of hand and device; > 0
+  double stiffness = 50;       // k, N/m, of the grip; >= 0
+  double damping = 0.5;        // b, N s/m, of both; >= 0
+  double friction = 0;         // f, N, dry friction in the device; >= 0
+  double encoder_step = 0;     // m: positions are told in whole steps of it, along each axis; 0: as they are
+  std::uint32_t delay = 0;     // ticks between a write and its force; at most kMaxDelay
+  double device_mass = 0.075;  // kg, of the device alone, as its info tells; (0, mass]
+  double max_force = 3.3;      // N, of its motors: the norm of what is written is clamped to it; > 0
+  double max_stiffness = 0;    // N/m and
+  double max_damping = 0;      // N s/m, as its info tells; 0: it does not
 
   static constexpr std::uint32_t kMaxDelay = 64;
 };

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/trajectory.hpp"
 
 namespace crumble {
@@ -38,7 +38,7 @@ class PoseCurve {
     Pose pose;
     Vec3 slope;  // m/s
   };
-  std::vector<Knot> knots_;
+  Vector<Knot> knots_;
 };
 
 }  // namespace crumble

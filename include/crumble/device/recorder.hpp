@@ -3,8 +3,8 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/trajectory.hpp"
 
 namespace crumble {
@@ -32,7 +32,7 @@ class Recorder final : public Device {
 
  private:
   std::unique_ptr<Device> device_;
-  std::vector<TrajectoryRow> rows_;  // capacity long
+  Vector<TrajectoryRow> rows_;  // capacity long
   std::size_t size_ = 0;
   std::size_t dropped_ = 0;
   bool last_kept_ = false;  // whether the next write belongs to the last row

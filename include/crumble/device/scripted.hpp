@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 
 namespace crumble {
@@ -34,8 +34,8 @@ struct PathPoint {
 /// From `start` (at time 0) straight to each point, at constant speed; turns about one axis are turned at constant
 /// speed too. Then finished. A point with the move and turn of the one before holds still.
 struct PathOptions {
-  Pose start = {};                // m, device frame
-  std::vector<PathPoint> points;  // one at least
+  Pose start = {};           // m, device frame
+  Vector<PathPoint> points;  // one at least
 };
 
 /// Throws Error naming the field of the option (bad_pose, empty, invalid_value, out_of_range), or the tick.

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 
 namespace crumble {
@@ -23,10 +23,10 @@ struct TrajectoryRow {
 
 struct Trajectory {
   /// Lines "key: value" that say where the motion comes from, in file order. Keys nobody knows are kept.
-  std::vector<std::string> header;
+  Vector<std::string> header;
   /// quantity bits of the columns present; what is absent stands at its default in every row.
   std::uint32_t columns = quantity::kPosition;
-  std::vector<TrajectoryRow> rows;
+  Vector<TrajectoryRow> rows;
 
   /// The value of the first header line "key: value"; empty when there is none.
   std::string_view value_of(std::string_view key) const;

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/fracture/fragments.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
@@ -123,7 +123,7 @@ class FragmentTracker {
 
   // What is saved and hashed.
   ReservedVector<std::uint32_t> log_;  // springs in the order of their cuts
-  std::vector<std::uint32_t> labels_;
+  Vector<std::uint32_t> labels_;
   ReservedVector<FragmentRecord> records_;
   std::size_t settled_end_ = 0;  // the labels are exact for the log up to here
   std::size_t search_end_ = 0;   // the search looks into the cuts from there to here; equal: none is under way
@@ -131,12 +131,12 @@ class FragmentTracker {
 
   // What follows from that, and room to work.
   ReservedVector<FragmentSplit> splits_;
-  std::vector<bool> cut_, gone_;               // springs: cut so far, and of those up to search_end_ (spring_count)
-  std::vector<std::uint32_t> groups_by_node_;  // or kNoGroup
-  std::vector<std::uint32_t> queue_;           // nodes reached, each once (node_count)
+  Vector<bool> cut_, gone_;               // springs: cut so far, and of those up to search_end_ (spring_count)
+  Vector<std::uint32_t> groups_by_node_;  // or kNoGroup
+  Vector<std::uint32_t> queue_;           // nodes reached, each once (node_count)
   std::size_t queue_begin_ = 0, queue_end_ = 0;
   ReservedVector<Group> groups_;
-  std::vector<Search> searches_;  // by fragment; stale for those that have no group
+  Vector<Search> searches_;       // by fragment; stale for those that have no group
   std::uint32_t unresolved_ = 0;  // fragments whose search is not done
 };
 

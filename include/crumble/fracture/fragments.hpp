@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
@@ -30,8 +30,8 @@ class FragmentLabeler {
 
  private:
   std::span<const Edge> springs_;
-  std::vector<std::uint32_t> parents_;
-  std::vector<std::uint32_t> labels_;
+  Vector<std::uint32_t> parents_;
+  Vector<std::uint32_t> labels_;
   std::size_t count_;
 };
 
@@ -74,12 +74,12 @@ class FragmentLists {
     Lists(std::size_t item_count, std::size_t max_label_count);
     void sort(std::span<const std::uint32_t> labels, std::size_t count) noexcept;
     std::span<const std::uint32_t> of(std::uint32_t label) const noexcept;
-    std::vector<std::uint32_t> items, starts;
+    Vector<std::uint32_t> items, starts;
     std::size_t label_count = 0;
   };
 
   const TetMesh* mesh_;
-  std::vector<std::uint32_t> tetrahedron_labels_;  // kNoFragment: broken
+  Vector<std::uint32_t> tetrahedron_labels_;  // kNoFragment: broken
   Lists nodes_, tetrahedra_;
 };
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/transcendental.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
@@ -106,9 +106,9 @@ class SurfaceExtractor {
 
 /// One fragment's own surface.
 struct FragmentSurface {
-  TriangleMesh mesh;                     // now; closed
-  std::vector<std::uint32_t> vertices;   // per vertex: its index in the whole surface
-  std::vector<std::uint32_t> triangles;  // per triangle: its index in the whole surface
+  TriangleMesh mesh;                // now; closed
+  Vector<std::uint32_t> vertices;   // per vertex: its index in the whole surface
+  Vector<std::uint32_t> triangles;  // per triangle: its index in the whole surface
 };
 FragmentSurface fragment_surface(const SurfaceExtractor& surface, std::uint32_t fragment);
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
@@ -20,15 +20,15 @@ struct Plane {
 /// kLanes by planes that nothing is above, and the triangles of each plane.
 struct FaceTable {
   static constexpr std::size_t kLanes = 4;
-  std::vector<double> x, y, z, offset;
-  std::vector<Triangle> triangles;            // in the order of their planes
-  std::vector<std::uint32_t> first_triangle;  // of each plane, and the end
+  Vector<double> x, y, z, offset;
+  Vector<Triangle> triangles;            // in the order of their planes
+  Vector<std::uint32_t> first_triangle;  // of each plane, and the end
 };
 
 /// A closed convex polyhedron in its own frame, metres. The functions below make it.
 struct ConvexPolyhedron {
-  std::vector<Plane> planes;
-  std::vector<Vec3> vertices;
+  Vector<Plane> planes;
+  Vector<Vec3> vertices;
   TriangleMesh surface;       // for drawing and for other libraries; same vertices
   double half_thickness = 0;  // radius of the largest sphere about the vertex mean that fits inside
   FaceTable faces;

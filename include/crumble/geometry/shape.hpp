@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble {
@@ -29,7 +29,7 @@ struct Crease {
 };
 
 /// A solid body shape. Immutable; all lengths in metres.
-class Shape {
+class Shape : public Allocated {
  public:
   virtual ~Shape() = default;
   /// < 0 inside, exact distance.
@@ -41,12 +41,12 @@ class Shape {
   virtual double volume() const = 0;
   virtual double area() const = 0;
   virtual double least_thickness() const = 0;
-  const std::vector<Vec3>& corners() const { return corners_; }
-  const std::vector<Crease>& creases() const { return creases_; }
+  const Vector<Vec3>& corners() const { return corners_; }
+  const Vector<Crease>& creases() const { return creases_; }
 
  protected:
-  std::vector<Vec3> corners_;
-  std::vector<Crease> creases_;
+  Vector<Vec3> corners_;
+  Vector<Crease> creases_;
 };
 
 /// Box with the given edge lengths, resting on y = 0, centred in x and z. Throws Error on a size that is not positive.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/geometry/convex.hpp"
 #include "crumble/geometry/pose.hpp"
@@ -49,7 +50,7 @@ class SolidModel {
 
  protected:
   /// `corners` of any number but 0.
-  void set_corners(const std::vector<Vec3>& corners);
+  void set_corners(const Vector<Vec3>& corners);
 
   VecArray corners_;
   double rounding_ = 0;

@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 
 namespace crumble {
@@ -12,8 +12,8 @@ namespace crumble {
 using Triangle = std::array<std::uint32_t, 3>;  // vertex indices, counter-clockwise seen from outside
 
 struct TriangleMesh {
-  std::vector<Vec3> vertices;  // metres
-  std::vector<Triangle> triangles;
+  Vector<Vec3> vertices;  // metres
+  Vector<Triangle> triangles;
 };
 
 /// What of a triangle a b c a point lies on.

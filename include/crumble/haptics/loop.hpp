@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/device/device.hpp"
 #include "crumble/device/workspace.hpp"
 #include "crumble/haptics/status.hpp"
@@ -58,7 +59,7 @@ struct LoopDef {
   bool watchdog = true;  // a thread that takes the force away when ticks stay out for kStopAge; from start() to stop().
                          // Where the device drives, none but its own driver can: the hand is faulted, no more
   ThreadOptions thread;
-  std::vector<HandDef> hands;  // one to kMaxHands
+  Vector<HandDef> hands;  // one to kMaxHands
 };
 
 /// The paper's choices: Eq (7)'s mean, held; nothing between body and hand but the safety stages.
@@ -77,7 +78,7 @@ class HapticLoop {
 
   const LoopDef& definition() const noexcept;
   /// What in the definition is not as it should be, in words: damping that the device cannot bear, ...
-  const std::vector<std::string>& warnings() const noexcept;
+  const Vector<std::string>& warnings() const noexcept;
 
   // Before start(), or while stopped
 
@@ -106,6 +107,11 @@ class HapticLoop {
   LoopTimes times() const noexcept;
   /// "SCHED_FIFO 80", or why not; empty where the thread is not ours.
   std::string realtime() const;
+  /// Another definition of the simulation, while the loop runs: `edit` gets what the last change led to. It is worked
+  /// out here, in as long as a simulation takes to make, and made between two steps, the oldest first, one per step;
+  /// stop() makes those that wait. Throws Error: what DefinitionChange throws; state (the loop does not run, or 64
+  /// wait).
+  void change(const std::function<void(SimulationDef&)>& edit);
   /// No force on any hand from the next tick on, until its fault is reset.
   void halt() noexcept;
   /// A hand that is faulted waits again, as at the beginning, and gets its force back by the ramp. Of another: nothing.

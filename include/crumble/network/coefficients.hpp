@@ -9,8 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/network/spring_network.hpp"
 
 namespace crumble {
@@ -32,11 +32,11 @@ struct StepCoefficients {
   double certified_time_step = 0;  // min c_i / D_i over nodes that move: energy cannot grow up to here, seconds
   std::size_t guarded_nodes = 0;   // whose drag the guard raised
   // per node; all zero at a fixed node
-  std::vector<double> decay;          // e^-gamma
-  std::vector<double> velocity_gain;  // (tau / m) phi1, s/kg
-  std::vector<double> drift;          // tau phi1, s
-  std::vector<double> force_gain;     // (tau^2 / m) phi2, s^2/kg
-  std::vector<double> drags;          // c_i in force, N s/m
+  Vector<double> decay;          // e^-gamma
+  Vector<double> velocity_gain;  // (tau / m) phi1, s/kg
+  Vector<double> drift;          // tau phi1, s
+  Vector<double> force_gain;     // (tau^2 / m) phi2, s^2/kg
+  Vector<double> drags;          // c_i in force, N s/m
 };
 
 /// Throws Error: out_of_range (tau), dt_too_large (tau above kMaxTimeStep; tau above the certified one under

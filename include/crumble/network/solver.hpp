@@ -10,10 +10,10 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
 #include "crumble/base/hash.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/team.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/network/coefficients.hpp"
@@ -37,7 +37,7 @@ struct SolverSettings {
 };
 
 /// Kernels that this library holds and this processor runs, slowest first. All give the same bits.
-std::vector<std::string> kernel_names();
+Vector<std::string> kernel_names();
 
 /// How a network was laid out for the solver.
 struct LayoutReport {
@@ -54,7 +54,7 @@ struct NodeGroups {
   std::span<const std::uint32_t> nodes;
 };
 
-class NetworkSolver : public NodeSource {
+class NetworkSolver : public NodeSource, public Allocated {
  public:
   /// At rest, unbroken, without external force. Copies what it needs of its arguments. Throws Error: out_of_range or
   /// invalid_value (a setting), unsupported (a kernel that is not there).
@@ -73,6 +73,11 @@ class NetworkSolver : public NodeSource {
   /// Loose bodies: the drag of their nodes acts on what their motion differs by from that of a rigid body. All others
   /// are braked against the room. No fixed or frozen node may be in a group. Copies.
   virtual void set_loose(const NodeGroups& groups) noexcept = 0;
+
+  /// The coefficients, settings, kernel and threads of `next`, a solver of the same mesh and precision, which gets
+  /// these in exchange. Positions and velocities stay; as after load() all springs are whole, no node is frozen and no
+  /// body loose. Allocates nothing.
+  virtual void redefine(NetworkSolver& next) noexcept = 0;
 
   /// A frozen node stays where it is, at rest, whatever pulls on it; it must not be held. `place` moves it all the
   /// same.

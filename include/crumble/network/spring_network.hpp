@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
@@ -25,14 +25,14 @@ enum class MassRule : std::uint8_t {
 };
 
 struct SpringNetwork {
-  std::vector<Edge> springs;           // node indices (spring_count)
-  std::vector<double> rest_lengths;    // l0, metres (spring_count)
-  std::vector<double> stiffnesses;     // k of the unbroken body, N/m (spring_count)
-  std::vector<double> masses;          // m_i, kg (node_count)
-  std::vector<double> drags;           // c_i of Eq (2), N s/m (node_count)
-  std::vector<double> stiffness_sums;  // D_i, sum of k over the node's springs, N/m (node_count)
-  double spring_damping = 0;           // of the damper along each spring, N s/m
-  std::vector<std::uint8_t> fixed;     // 1: never moves (node_count)
+  Vector<Edge> springs;           // node indices (spring_count)
+  Vector<double> rest_lengths;    // l0, metres (spring_count)
+  Vector<double> stiffnesses;     // k of the unbroken body, N/m (spring_count)
+  Vector<double> masses;          // m_i, kg (node_count)
+  Vector<double> drags;           // c_i of Eq (2), N s/m (node_count)
+  Vector<double> stiffness_sums;  // D_i, sum of k over the node's springs, N/m (node_count)
+  double spring_damping = 0;      // of the damper along each spring, N s/m
+  Vector<std::uint8_t> fixed;     // 1: never moves (node_count)
 
   std::size_t node_count() const { return masses.size(); }
   std::size_t spring_count() const { return springs.size(); }

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "crumble/base/bytes.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/contact/tool.hpp"
 #include "crumble/network/coefficients.hpp"
 #include "crumble/network/solver.hpp"
@@ -52,12 +52,12 @@ struct SimulationDef {
   TetMesh mesh;
   Material material;
   MassRule mass_rule = MassRule::lumped;
-  std::vector<std::uint32_t> fixed_nodes;
-  Vec3 gravity{0, -9.81, 0};                          // m/s^2
-  std::vector<Wall> walls{{{Vec3::UnitY(), 0}, {}}};  // a smooth floor at y = 0
-  std::vector<Tool> tools;
-  std::vector<Attachment> attachments;  // moved like tools: their poses stand behind those of the tools
-  Friction ball_friction{0.5, 0.5};     // between fragments
+  Vector<std::uint32_t> fixed_nodes;
+  Vec3 gravity{0, -9.81, 0};                     // m/s^2
+  Vector<Wall> walls{{{Vec3::UnitY(), 0}, {}}};  // a smooth floor at y = 0
+  Vector<Tool> tools;
+  Vector<Attachment> attachments;    // moved like tools: their poses stand behind those of the tools
+  Friction ball_friction{0.5, 0.5};  // between fragments
   StepSettings step;
 };
 
@@ -67,14 +67,17 @@ struct SimulationDef {
 void apply_paper_preset(SimulationDef& def);
 
 /// Nodes whose rest position has y <= height, metres: what stands on the table.
-std::vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height);
+Vector<std::uint32_t> nodes_below(const TetMesh& mesh, double height);
 /// Nodes whose rest position lies in the box, its faces included; corners in metres.
-std::vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high);
+Vector<std::uint32_t> nodes_in_box(const TetMesh& mesh, const Vec3& low, const Vec3& high);
 /// Nodes whose rest position has n . x <= offset.
-std::vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane);
+Vector<std::uint32_t> nodes_behind(const TetMesh& mesh, const Plane& plane);
 
 /// The definition as bytes and back (recordings). Reading throws Error(corrupt) and whatever its parts refuse.
 void write_definition(const SimulationDef& def, ByteWriter& out);
 SimulationDef read_definition(ByteReader& in);
+/// All but the mesh; reading keeps that of `def`, and what changes no bit.
+void write_settings(const SimulationDef& def, ByteWriter& out);
+void read_settings(ByteReader& in, SimulationDef& def);
 
 }  // namespace crumble

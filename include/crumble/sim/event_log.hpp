@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/sim/event.hpp"
 #include "crumble/tetmesh/node_constraint.hpp"
@@ -67,8 +67,8 @@ class EventLog {
   ReservedVector<Event> events_;
   std::uint64_t dropped_ = 0, step_ = 0;
   double time_ = 0;
-  ReservedVector<Touch> touches_;        // at the end of the last step
-  std::vector<LastTouch> last_touches_;  // of each node
+  ReservedVector<Touch> touches_;   // at the end of the last step
+  Vector<LastTouch> last_touches_;  // of each node
 };
 
 }  // namespace crumble

@@ -19,9 +19,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "crumble/base/latest_value.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/ring.hpp"
 #include "crumble/base/vec_array.hpp"
 #include "crumble/sim/event.hpp"
@@ -31,16 +31,16 @@ namespace crumble {
 
 /// A copy of what changes in a simulation.
 struct PublishedState {
-  std::uint64_t first_step = 0;                // steps done when the copy was begun, and
-  std::uint64_t step = 0;                      // when it was complete: the same but for large bodies
-  double time = 0;                             // simulated seconds, of `step`
-  Counters counters;                           // of `step`
-  VecArray positions;                          // metres (node_count)
-  std::vector<std::uint8_t> intact;            // 1 intact, 0 cut (spring_count)
-  std::vector<std::uint32_t> fragments;        // see Simulation::node_fragments (node_count)
-  std::size_t fragment_count = 0;              // ids given so far: those above are all below it
-  std::vector<FragmentRecord> records;         // by id (fragment_count; room for node_count)
-  std::vector<FragmentState> fragment_states;  // the same
+  std::uint64_t first_step = 0;           // steps done when the copy was begun, and
+  std::uint64_t step = 0;                 // when it was complete: the same but for large bodies
+  double time = 0;                        // simulated seconds, of `step`
+  Counters counters;                      // of `step`
+  VecArray positions;                     // metres (node_count)
+  Vector<std::uint8_t> intact;            // 1 intact, 0 cut (spring_count)
+  Vector<std::uint32_t> fragments;        // see Simulation::node_fragments (node_count)
+  std::size_t fragment_count = 0;         // ids given so far: those above are all below it
+  Vector<FragmentRecord> records;         // by id (fragment_count; room for node_count)
+  Vector<FragmentState> fragment_states;  // the same
 };
 
 /// From one stepping thread to one reading thread; which thread that is may change while none is in a call. Nothing

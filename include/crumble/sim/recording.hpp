@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/sim/simulation.hpp"
 
 namespace crumble {
@@ -24,7 +25,12 @@ class Recording {
   void add_node_force(std::uint32_t node, const Vec3& force);
   /// After each Simulation::suspend_contact between steps.
   void add_suspension(std::uint32_t tool, bool suspended);
+  /// After each DefinitionChange::apply_to between steps: what settings_of() gives of the new definition.
+  void add_change(Vector<std::uint8_t> settings);
+  static Vector<std::uint8_t> settings_of(const SimulationDef& def);
 
+  /// Steps that the simulation had done where the recording begins.
+  std::uint64_t first_step() const;
   std::size_t step_count() const { return hashes_.size(); }
   std::size_t tool_count() const { return tool_count_; }
   std::span<const Pose> poses(std::size_t step) const { return {poses_.data() + step * tool_count_, tool_count_}; }
@@ -55,17 +61,24 @@ class Recording {
     std::uint32_t tool;
     bool suspended;
   };
+  struct DefinitionAt {
+    std::uint64_t step;  // that came after it
+    Vector<std::uint8_t> settings;
+  };
   Recording() = default;
   void load_fragment_changes(ByteReader& in, const std::string& name);
   void load_force_changes(ByteReader& in, const std::string& name);
   void load_suspensions(ByteReader& in, const std::string& name);
-  std::vector<std::uint8_t> definition_, snapshot_;
+  void load_changes(ByteReader& in, const std::string& name);
+  void apply_change(const DefinitionAt& change, Simulation& sim) const;
+  Vector<std::uint8_t> definition_, snapshot_;
   std::size_t tool_count_ = 0;  // and attachments
-  std::vector<Pose> poses_;     // (step_count x tool_count)
-  std::vector<std::uint64_t> hashes_;
-  std::vector<FragmentChange> fragment_changes_;  // in the order of time
-  std::vector<ForceChange> force_changes_;        // in the order of time
-  std::vector<Suspension> suspensions_;           // in the order of time
+  Vector<Pose> poses_;          // (step_count x tool_count)
+  Vector<std::uint64_t> hashes_;
+  Vector<FragmentChange> fragment_changes_;  // in the order of time
+  Vector<ForceChange> force_changes_;        // in the order of time
+  Vector<Suspension> suspensions_;           // in the order of time
+  Vector<DefinitionAt> changes_;             // in the order of time
 };
 
 /// The first step whose state differs from the recorded one; nothing when all agree.

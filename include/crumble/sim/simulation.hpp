@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "crumble/base/cloned.hpp"
 #include "crumble/base/error.hpp"
+#include "crumble/base/memory.hpp"
 #include "crumble/base/reserved_vector.hpp"
 #include "crumble/contact/ball_contacts.hpp"
 #include "crumble/contact/contacts.hpp"
@@ -23,6 +23,12 @@
 
 namespace crumble {
 
+/// Told of each step of several, with its poses.
+struct AfterStep {
+  void (*call)(std::span<const Pose> poses, void* context) = nullptr;
+  void* context = nullptr;
+};
+
 /// One thread at a time may use a simulation. Set-up throws Error; step() never throws, allocates, locks or calls the
 /// system, and gives the same bits in every build.
 class Simulation {
@@ -33,6 +39,14 @@ class Simulation {
   /// each attachment) and the body answers. A bad pose
   /// leaves body and time as they are and makes all wrenches zero.
   const StepInfo& step(std::span<const Pose> poses) noexcept;
+
+  /// `steps` steps in which the tools go evenly from where they are to `poses`, for hosts whose frames are longer than
+  /// a step. `wrenches` (by holder, or empty) receives their mean: times the time advanced, the impulse on each tool.
+  /// Steps are whole or not at all: at least one is done, and another one only while it can be expected to end within
+  /// `budget` seconds of wall time (0: no limit); tools stay where the last one brought them. `after_step` is told of
+  /// each with its poses, for readers and recordings. A bad pose or a diverged body ends it: see info().
+  AdvanceReport advance(std::span<const Pose> poses, std::uint32_t steps, double budget,
+                        std::span<Wrench> wrenches = {}, const AfterStep& after_step = {}) noexcept;
 
   const StepInfo& info() const noexcept { return info_; }
   const StepProfile& profile() const noexcept { return profile_; }
@@ -116,12 +130,13 @@ class Simulation {
 
   /// All that the future depends on. A snapshot fits simulations of the same definition only; restoring throws
   /// Error(corrupt, version) and then changes nothing.
-  std::vector<std::uint8_t> snapshot() const;
+  Vector<std::uint8_t> snapshot() const;
   void restore(std::span<const std::uint8_t> bytes);
   /// Hash of positions, velocities, cuts, contacts, wrenches and fragments: equal bits, equal hash.
   std::uint64_t state_hash() const noexcept;
 
  private:
+  friend class DefinitionChange;
   struct Fading {
     std::uint32_t spring, substeps_left;
   };
@@ -161,6 +176,11 @@ class Simulation {
   void take_away(std::uint32_t node) noexcept;
   void load_fragments(ByteReader& in);
   void take_state(Simulation& from) noexcept;
+  void adopt(Simulation& next, std::span<const std::uint8_t> moved_tools, bool moved_walls) noexcept;
+  void swap_definition(Simulation& next) noexcept;
+  void renew_shares() noexcept;
+  void renew_fragment_states() noexcept;
+  std::span<const std::uint32_t> list_cuts(std::span<std::uint32_t> room) const noexcept;
   void log_cut(std::uint32_t spring) noexcept;
   void log_contacts() noexcept;
   void set_share(std::uint32_t spring, double share) noexcept;
@@ -183,30 +203,31 @@ class Simulation {
   Contacts contacts_;
   std::optional<BallContacts> balls_;
   VecArray ball_positions_, ball_velocities_;  // of balls_->nodes()
-  std::vector<BallFragment> ball_fragments_;   // by id
-  std::vector<double> stiffnesses_;            // in force now, N/m: fading to 0 once a spring is cut (spring_count)
+  Vector<BallFragment> ball_fragments_;        // by id
+  Vector<double> stiffnesses_;                 // in force now, N/m: fading to 0 once a spring is cut (spring_count)
   VecArray node_forces_;                       // from the host, N
   VecArray external_;                          // weight + node force of each node, N
-  std::vector<std::uint8_t> intact_;           // 1 intact, 0 cut (spring_count)
-  std::vector<std::uint32_t> new_cuts_;
+  Vector<std::uint8_t> intact_;                // 1 intact, 0 cut (spring_count)
+  Vector<std::uint32_t> new_cuts_;
   ReservedVector<Fading> fading_;            // cut springs that still pull, oldest first
-  std::vector<Pose> start_poses_;            // of the tools, at the start of the step
+  Vector<Pose> start_poses_;                 // of the tools, at the start of the step
+  Vector<Pose> advance_from_, advance_to_;   // of the tools, in advance()
   mutable VecArray positions_, velocities_;  // copies by node
   mutable bool positions_known_ = false, velocities_known_ = false;
-  mutable std::vector<std::uint32_t> marks_;  // room to work (node_count), 0
-  VecArray before_solve_;                     // positions, for the audit
+  mutable Vector<std::uint32_t> marks_;  // room to work (node_count), 0
+  VecArray before_solve_;                // positions, for the audit
   double kinetic_before_solve_ = 0;
 
   FragmentTracker fragments_;
-  std::vector<FragmentState> fragment_states_;  // by id (node_count: there are never more)
-  std::uint64_t regroup_at_ = 0;                // step in which a fragment stops following its parent
-  std::vector<std::uint32_t> loose_first_, loose_nodes_, loose_group_of_;  // of find_loose_fragments
-  std::vector<std::uint8_t> is_debris_;                                    // by id, of find_debris
+  Vector<FragmentState> fragment_states_;  // by id (node_count: there are never more)
+  std::uint64_t regroup_at_ = 0;           // step in which a fragment stops following its parent
+  Vector<std::uint32_t> loose_first_, loose_nodes_, loose_group_of_;  // of find_loose_fragments
+  Vector<std::uint8_t> is_debris_;                                    // by id, of find_debris
   ReservedVector<std::uint32_t> debris_;
 
   EventLog event_log_;
-  std::vector<Wrench> wrenches_;
-  std::vector<std::array<Wrench, 5>> history_;  // of Eq (7), newest at step % 5
+  Vector<Wrench> wrenches_;
+  Vector<std::array<Wrench, 5>> history_;  // of Eq (7), newest at step % 5
   StepInfo info_;
   StepProfile profile_;
   Counters counters_;

@@ -32,6 +32,15 @@ struct StepInfo {
   std::uint32_t bad_node = 0;  // with status diverged: the first node that left the world
 };
 
+/// What came of several steps.
+struct AdvanceReport {
+  std::uint32_t steps = 0;    // done
+  std::uint32_t dropped = 0;  // for want of time: simulated time lags by so many
+  std::uint32_t flags = 0;    // StepFlag bits of all of them
+  std::uint32_t new_cuts = 0;
+  double seconds = 0;  // wall time
+};
+
 /// Wall seconds that the stages of the last step took; same names and order as in step.cpp.
 struct StepProfile {
   double move_tool = 0;
@@ -56,6 +65,7 @@ struct Counters {
   std::uint64_t woken = 0;            // fragments, by tools and by fragments that hit them
   std::uint64_t removed = 0;          // fragments
   std::uint64_t removed_nodes = 0;
+  std::uint64_t dropped_steps = 0;  // by advance(), for want of time
 };
 
 }  // namespace crumble

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/tetmesh/tet_mesh.hpp"
 
 namespace crumble {
@@ -19,9 +19,9 @@ struct SpringGraph {
   /// The springs that lead to them.
   const std::uint32_t* springs_of(std::uint32_t node) const noexcept { return springs_by_node.data() + starts[node]; }
 
-  std::vector<Edge> springs;
-  std::vector<std::uint32_t> starts;                      // of each node's neighbors (node_count + 1)
-  std::vector<std::uint32_t> neighbors, springs_by_node;  // by node, then by spring
+  Vector<Edge> springs;
+  Vector<std::uint32_t> starts;                      // of each node's neighbors (node_count + 1)
+  Vector<std::uint32_t> neighbors, springs_by_node;  // by node, then by spring
 };
 
 }  // namespace crumble

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "crumble/base/memory.hpp"
 #include "crumble/base/vec.hpp"
 #include "crumble/geometry/triangle_mesh.hpp"
 
@@ -23,13 +23,13 @@ inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kTetFaces{{{1, 2, 3}
 enum class NodeKind : std::uint8_t { corner = 0, crease = 1, surface = 2, inside = 3 };
 
 struct TetMesh {
-  std::vector<Vec3> positions;                            // at rest, metres (node_count)
-  std::vector<NodeKind> kinds;                            // (node_count)
-  std::vector<double> node_volumes;                       // a quarter of each tetrahedron, m^3 (node_count)
-  std::vector<Tetrahedron> tetrahedra;                    // (tetrahedron_count)
-  std::vector<Edge> springs;                              // every edge once, ascending (spring_count)
-  std::vector<std::array<std::uint32_t, 6>> tet_springs;  // spring ids in kTetEdges order (tetrahedron_count)
-  std::vector<Triangle> boundary;                         // outward faces with one tetrahedron
+  Vector<Vec3> positions;                            // at rest, metres (node_count)
+  Vector<NodeKind> kinds;                            // (node_count)
+  Vector<double> node_volumes;                       // a quarter of each tetrahedron, m^3 (node_count)
+  Vector<Tetrahedron> tetrahedra;                    // (tetrahedron_count)
+  Vector<Edge> springs;                              // every edge once, ascending (spring_count)
+  Vector<std::array<std::uint32_t, 6>> tet_springs;  // spring ids in kTetEdges order (tetrahedron_count)
+  Vector<Triangle> boundary;                         // outward faces with one tetrahedron
 
   std::size_t node_count() const { return positions.size(); }
   std::size_t surface_node_count() const;
@@ -38,8 +38,7 @@ struct TetMesh {
 /// Derives springs, boundary and volumes from nodes and tetrahedra. `kinds` may be empty: then boundary nodes are
 /// `surface` and the others `inside`. Throws Error: empty, invalid_value, mesh (index out of range, flat or inverted
 /// tetrahedron, a face with more than two tetrahedra), isolated_node, duplicate_node; names the first bad index.
-TetMesh make_tet_mesh(std::vector<Vec3> positions, std::vector<Tetrahedron> tetrahedra,
-                      std::vector<NodeKind> kinds = {});
+TetMesh make_tet_mesh(Vector<Vec3> positions, Vector<Tetrahedron> tetrahedra, Vector<NodeKind> kinds = {});
 
 /// Sum of the tetrahedra's volumes, m^3.
 double volume(const TetMesh& mesh);
