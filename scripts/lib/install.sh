@@ -7,6 +7,8 @@ build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev libccd
 # Beside these: test and benchmark frameworks, libraries that results are compared with, a second compiler and its
 # formatter.
 test_packages=(ccache libgtest-dev libbenchmark-dev libbullet-dev libassimp-dev clang clang-format)
+# For the bindings and their tests, and for what guards the ABI. Where one is missing its tests are skipped.
+binding_packages=(abigail-tools python3-clang python3-numpy cargo rustc mono-mcs luajit)
 lint_packages=(clang-tidy)
 # For the kernels of other processors: a compiler and something that runs what it makes.
 aarch64_packages=(g++-aarch64-linux-gnu qemu-user)
@@ -56,6 +58,11 @@ need_packages() {
     exit 1
   }
   rm "$log"
+}
+
+# Node and npm: what is there, wherever it came from; else Debian's.
+need_node() {
+  command -v node >/dev/null && command -v npm >/dev/null || need_packages nodejs npm
 }
 
 # These two see the variables of need_packages.
