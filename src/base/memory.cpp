@@ -15,9 +15,9 @@ void* take_from_run_time(std::size_t bytes, std::size_t alignment, void*) {
   return ::operator new (bytes, std::align_val_t{alignment}, std::nothrow);
 }
 
-void give_run_time_back(void* memory, std::size_t bytes, std::size_t alignment, void*) {
-  if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) return ::operator delete(memory, bytes);
-  ::operator delete (memory, bytes, std::align_val_t{alignment});
+void give_run_time_back(void* memory, std::size_t, std::size_t alignment, void*) {
+  if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) return ::operator delete(memory);
+  ::operator delete (memory, std::align_val_t{alignment});
 }
 
 // Constant-initialised: static objects of the library and of hosts may take memory before main.
