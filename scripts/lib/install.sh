@@ -60,9 +60,9 @@ need_packages() {
   rm "$log"
 }
 
-# Node and npm: what is there, wherever it came from; else Debian's.
+# Node and npm: what is there, wherever it came from, since Debian's npm does not go with every other Node; else Debian's.
 need_node() {
-  command -v node >/dev/null && command -v npm >/dev/null || need_packages nodejs npm
+  command -v node >/dev/null || need_packages nodejs npm
 }
 
 # These two see the variables of need_packages.
