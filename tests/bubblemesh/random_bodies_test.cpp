@@ -1,11 +1,11 @@
 // Many boxes, spheres and cylinders of random sizes, lattices and offsets: each must give a valid mesh of good quality.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <sstream>
 
 #include "crumble/base/random.hpp"
 #include "crumble/bubblemesh/generate.hpp"
+#include "support/long_lane.hpp"
 
 namespace crumble {
 namespace {
@@ -68,9 +68,9 @@ TEST(RandomBodies, AreAllGood) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) expect_good(random_body(seed, 300));
 }
 
-// CRUMBLE_LONG_TESTS=1: larger ones too, about a minute.
+// Larger ones too, about a minute.
 TEST(RandomBodies, LargerOnesAreGoodToo) {
-  if (!std::getenv("CRUMBLE_LONG_TESTS")) GTEST_SKIP() << "set CRUMBLE_LONG_TESTS=1";
+  if (!is_long_lane()) GTEST_SKIP() << "in scripts/test-long";
   for (std::uint64_t seed = 1000; seed < 1300; ++seed) expect_good(random_body(seed, 3000));
 }
 

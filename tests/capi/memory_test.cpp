@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capi/rig.hpp"
+#include "support/long_lane.hpp"
 
 namespace crumble {
 namespace {
@@ -142,7 +143,7 @@ TEST_F(CapiMemory, NoneLeftIsAnsweredWhereverItHappens) {
   host.takes = 0;
   ASSERT_OK(use_everything(cube));
   const std::uint64_t takes = host.takes;
-  const std::uint64_t stride = std::getenv("CRUMBLE_LONG_TESTS") ? 1 : takes / 400 + 1;
+  const std::uint64_t stride = is_long_lane() ? 1 : takes / 400 + 1;
   for (const bool and_after : {false, true}) {
     for (std::uint64_t n = 1; n <= takes; n += stride) {
       host.takes = 0, host.refuse_at = n, host.and_after = and_after;

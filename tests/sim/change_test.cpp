@@ -175,6 +175,9 @@ TEST(DefinitionChange, FrictionOfAToolThatHoldsChangesAtOnce) {
     PressRig rig;
     rig.press_to(0.005);
     change(rig.sim, [&](SimulationDef& def) { def.tools[0].friction = friction; });
+    for (const NodeConstraint& c : rig.sim.contacts()) {  // what a local model goes by, before any step
+      EXPECT_EQ(c.static_friction, c.holder == 0 ? friction.static_coefficient : c.static_friction);
+    }
     Pose pose = rig.pose_at(rig.sim.info().step);
     double most = 0;
     for (int i = 0; i < 100; ++i) {

@@ -5,9 +5,14 @@
 
 namespace crumble {
 
-/// `all` with CRUMBLE_LONG_TESTS in the environment, else a fifth.
+/// CRUMBLE_LONG_TESTS in the environment.
+inline bool is_long_lane() {
+  return std::getenv("CRUMBLE_LONG_TESTS") != nullptr;
+}
+
+/// `all` in the long lane, else a fifth.
 inline int in_long_lane(int all) {
-  return std::getenv("CRUMBLE_LONG_TESTS") ? all : all / 5;
+  return is_long_lane() ? all : all / 5;
 }
 
 }  // namespace crumble
